@@ -26,6 +26,8 @@ from kb_build.symbols.records import (
     LOCKED_ON,
     LOCKED_WITH,
     MUST_HAVE,
+    NOT_KNOWN,
+    REFUSED_ALL,
     STOPS,
     UNBOUNDED,
 )
@@ -122,14 +124,22 @@ def _add_needs(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
 
 
 def _add_areas(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
-    """Adds in which areas an operator runs, and what it takes of the context instead."""
+    """Adds in which areas an operator runs, what it wants there, and what it takes of the context instead."""
     if row is not None:
         row["flags"] = [
             *row.get("flags", ()),
             *(AREAS + area for area in seen.get("areas", ())),
             *([GIVEN + seen["given"]] if seen.get("given") else ()),
-            *([ALSO + seen["also"]] if seen.get("also") else ()),
+            *(ALSO + statement for statement in seen.get("also", ())),
         ]
+        if "needs" in seen:
+            row["needs"] = seen["needs"]
+
+
+def _add_refused(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds that an operator's poll took nothing, or that it is not known what it takes."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), NOT_KNOWN if seen.get("is_unknown") else REFUSED_ALL]
 
 
 def _add_argument_items(row: dict[str, Any] | None, asked: dict[str, Any]) -> None:
@@ -243,6 +253,7 @@ ADDED = {
     "operator_needs": _add_needs,
     "operator_areas": _add_areas,
     "operator_calls": _add_calls,
+    "operator_refused": _add_refused,
     "refusals": _add_refusals,
     "refused_default": _add_refused_default,
     "source_items": _add_source_items,

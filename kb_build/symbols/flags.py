@@ -14,6 +14,7 @@ from kb_build.symbols.records import (
     FREED_BY,
     GIVEN,
     LOCKED_ON,
+    NOT_ENOUGH,
     THEN,
 )
 from kb_build.symbols.unlisted import STAND_INS
@@ -102,8 +103,8 @@ def operator_given(symbol: Symbol) -> str:
 
 
 def operator_also(symbol: Symbol) -> tuple[str, ...]:
-    """What must be set besides for an operator that runs only in areas, as a statement."""
-    return symbol.flagged(ALSO)
+    """What must be set besides for an operator that runs only in areas, as statements; what was not found is none."""
+    return tuple(statement for statement in symbol.flagged(ALSO) if statement != NOT_ENOUGH)
 
 
 def never_taken(symbol: Symbol, argument: str) -> frozenset[str]:

@@ -23,6 +23,8 @@ from kb_build.symbols.flags import (
 )
 from kb_build.symbols.python_values import is_new_list
 from kb_build.symbols.records import (
+    ALSO,
+    ANY,
     EMPTY,
     ENDS_BEFORE,
     ENDS_WITHOUT,
@@ -33,6 +35,9 @@ from kb_build.symbols.records import (
     LOCKED_ON,
     LOCKED_WITH,
     NEVER_BY_IDENTIFIER,
+    NOT_ENOUGH,
+    NOT_KNOWN,
+    REFUSED_ALL,
     SHOWN_WHEN,
     STARTUP,
     last_name,
@@ -45,6 +50,8 @@ if TYPE_CHECKING:
     from kb_build.symbols.taken import Taken
 
 _ACTIVE = "bpy.context.object"
+# Before an operator is said to take nothing (see ``kb_build/blender/inside/operator_areas.py``).
+TRIED = "objects of every type in every mode, areas of every type, things that calls add and editors show"
 _REGISTERED = "nodes of a class that a script registers: built-in ones refuse it"
 _OF_OWN_NODES = frozenset({"bpy.types.NodeInputs", "bpy.types.NodeOutputs"})
 GET_EVALUATED = ".evaluated_get(bpy.context.evaluated_depsgraph_get())"
@@ -123,14 +130,31 @@ def locked_text(symbol: Symbol) -> str:
 def operator_needs(symbol: Symbol) -> str:
     """What an operator's poll wants, of all that was tried; empty where that is not known."""
     given = [f"`{member}` in the context (`temp_override({member}=…)`)" for member in symbol.flagged(GIVEN)]
-    also = "".join(f", with `{call}`" for call in operator_also(symbol))
-    areas = [area_text(operator_areas(symbol)) + also] if operator_areas(symbol) else []
-    return (symbol.needs.text if symbol.needs else "") or ", or ".join(given + areas)
+    needs = symbol.needs.text if symbol.needs else ""
+    if not operator_areas(symbol):
+        return needs or ", or ".join(given)
+    also = operator_also(symbol)
+    area = (
+        area_text(operator_areas(symbol))
+        + (f" and {needs}" if needs else "")
+        + (f", with `{'`, then `'.join(also)}`" if also else "")
+        + (", which alone is not enough" if ALSO + NOT_ENOUGH in symbol.flags else "")
+    )
+    return ", or ".join([*given, area])
+
+
+def poll_line(symbol: Symbol) -> str:
+    """What an operator's poll takes, as a sentence, and whether that is known; empty where it refused nothing."""
+    if needs := operator_needs(symbol):
+        return f"Of all that was tried, its poll takes {needs}."
+    if REFUSED_ALL in symbol.flags:
+        return f"Its poll took nothing of what was tried ({TRIED})."
+    return "What its poll takes is not known." if NOT_KNOWN in symbol.flags else ""
 
 
 def area_text(types: Sequence[str]) -> str:
     """``an area of type VIEW_3D or IMAGE_EDITOR``."""
-    return "an area" if "any" in types else f"an area of type {' or '.join(types)}"
+    return "an area of any type" if ANY in types else f"an area of type {' or '.join(types)}"
 
 
 def refusal_lines(symbol: Symbol) -> list[str]:

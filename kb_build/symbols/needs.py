@@ -65,7 +65,7 @@ class OperatorNeeds:
     ``active``: that an object is active, or is selected as well, or any or none will do; empty where it does not
     matter. Of which ``types`` it is, in which ``modes``; or else one of the ``cases``; ``in_some_modes`` where there
     are too many of these. ``modes_of_some`` are those in which it runs with some types only. ``calls`` must have been
-    made before; ``with_modifier``: the object must have any modifier.
+    made before, which ``sets`` something rather than adds it; ``with_modifier``: the object must have any modifier.
     """
 
     active: Literal["", "any", "active", "selected"] = ""
@@ -76,6 +76,7 @@ class OperatorNeeds:
     modes_of_some: tuple[str, ...] = ()
     calls: tuple[str, ...] = ()
     with_modifier: bool = False
+    sets: bool = False
 
     @classmethod
     def of(cls, row: Mapping[str, Any]) -> OperatorNeeds:
@@ -89,12 +90,14 @@ class OperatorNeeds:
             tuple(row.get("modes_of_some", ())),
             tuple(row.get("calls", ())),
             row.get("with_modifier", False),
+            row.get("sets", False),
         )
 
     @property
     def text(self) -> str:
         """``an active object of type 'MESH' in mode 'EDIT'``; empty where it refused nothing."""
-        added = f"what `{'`, then `'.join(self.calls)}` adds" if self.calls else ""
+        does = "sets" if self.sets else "adds"
+        added = f"what `{'`, then `'.join(self.calls)}` {does}" if self.calls else ""
         if not self.active:
             return added
         parts = (

@@ -45,8 +45,14 @@ CALLS = "calls:"
 # that it takes instead.
 AREAS = "areas:"
 GIVEN = "given:"
-# How a flag begins that names what must be set besides, where an operator runs only in areas.
+# How flags begin that name what must be set besides, where an operator runs only in areas: statements, in their order,
+# or what is said of an area that is not enough where that was not found.
 ALSO = "also:"
+NOT_ENOUGH = "..."
+# The flags of an operator whose poll said no to all that was tried, and of one that was not asked or did not answer
+# alike.
+REFUSED_ALL = "refused-all"
+NOT_KNOWN = "poll-not-known"
 # How a flag begins that says what must not be None: Blender ends when the function is called.
 ENDS_WITHOUT = "ends-without:"
 # How a flag begins that says what must be called before an operator's mode is entered: else Blender ends where there is

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import SIDES, STRUCT, TYPES
 from kb_build.symbols.flags import is_stand_in, operator_areas, operator_given
-from kb_build.symbols.lines import area_text, mode_needed, operator_needs, version_meant, written
+from kb_build.symbols.lines import area_text, mode_needed, poll_line, version_meant, written
 from kb_build.symbols.records import BARE_DATA, CALLS, PAIRS
 from kb_serve.answer.arguments import argument_lines, arguments, operator_call
 from kb_serve.answer.asked_values import ASKED_NOTHING
@@ -158,8 +158,8 @@ class MarkdownRenderer:
         if line := " · ".join(facts(symbol)):
             lines.append(line)
         lines.extend(asked_of_classes(symbol))
-        if needs := operator_needs(symbol):
-            lines.append(f"Of all that was tried, its poll takes {needs}.")
+        if line := poll_line(symbol):
+            lines.append(line)
         lines.extend(self._calls_in_areas(symbol))
         for instead in symbol.flagged(BARE_DATA):
             lines.append(_BARE_DATA + (f" Use `{instead}`." if instead else ""))

@@ -4,7 +4,8 @@
 Each is asked whether it can run (``poll``) in a scene that has an object of every type with what operators ask for: in
 every mode without an area, as in a Blender without a window; without one, but with each of the things that areas put
 into the context; and in an area of every type, in the 3D viewport in every mode. Some say yes to a thing without an
-area and end Blender all the same, so each is then called in a process of its own.
+area and end Blender all the same, so each is then called in a process of its own. What those that run in areas want of
+all that is there, operator_wants finds.
 """
 
 from collections import defaultdict
@@ -12,12 +13,11 @@ from contextlib import suppress
 
 import bpy
 
+from . import operator_wants
 from .apart import apart, can_work_apart
-from .instances.making import SEQUENCER_SCENE, activate, all_strips, choices, no_sequencer_scene
+from .instances.making import activate, all_strips, choices
 from .operator_defaults import Defaults
 
-# Of area types; those that run in more run in any.
-MOST_AREAS = 8
 # What is asked in every area: most operators of editors want no more.
 MANY = (("mesh", "EDIT"), ("grease_pencils", "OBJECT"), ("grease_pencils_v3", "OBJECT"))
 # What is asked with things of the context: object and mode.
@@ -31,6 +31,8 @@ EDITORS = (
 NOT_ASKED = (
     "object.modifier_copy_to_selected", "outliner.data_operation", "ui.view_drop", "view2d.scroller_activate",
 )  # fmt: skip
+# The statement of what is wanted beside an area where that was not found.
+ALONE = "..."
 CURVES = ("CURVE", "SURFACE", "FONT")
 COLLECTIONS = (
     "armatures", "lattices", "metaballs", "hair_curves", "grease_pencils", "grease_pencils_v3", "cameras", "speakers",
@@ -136,6 +138,7 @@ class Stage:
             ("point_cache", mesh.modifiers[0].point_cache), ("light", self.objects["lights"].data),
             ("camera", self.objects["cameras"].data), ("armature", self.objects["armatures"].data),
             ("world", self.scene.world), ("node", self.material.node_tree.nodes[0]),
+            ("constraint", mesh.constraints.new("CHILD_OF")), ("constraint", mesh.constraints.new("ARMATURE")),
             ("particle_system", next(iter(hair.particle_systems), None)),
         )  # fmt: skip
         return [(member, thing) for member, thing in found if thing is not None]
@@ -176,7 +179,7 @@ def polled(known):
 
 def works(operator, member, thing):
     """Whether an operator does its work, and Blender goes on, with one member of the context and no area."""
-    if not can_work_apart():
+    if operator is None or not can_work_apart():
         return False
 
     def work():
@@ -186,51 +189,42 @@ def works(operator, member, thing):
     return apart(work)
 
 
-def wanting_sequencer_scene(stage, known):
-    """The operators of these that the sequencer alone can run, and not without a scene for it."""
-    activate(stage.objects["mesh"])
-    if not hasattr(stage.window.workspace, "sequencer_scene") or not stage.show("SEQUENCE_EDITOR"):
-        return set()
-    with stage.within():
-        found = polled(known)
-        no_sequencer_scene()
-        found -= polled(known)
-    stage.window.workspace.sequencer_scene = stage.scene
-    return found
-
-
 def find_all(write, known, scene):
-    """One ``operator_areas`` record for each of these operators that runs in areas alone, or with a thing of theirs.
+    """What each of these operators wants that runs in areas, with a thing of theirs, or with something set.
 
-    ``scene`` is an empty one.
+    One ``operator_areas`` record, without ``areas`` where a setting is enough; ``operator_refused`` for one that never
+    ran. ``scene`` is an empty one.
     """
     stage = Stage(scene)
     things = stage.things()
     given, areas = {}, defaultdict(set)
     known = {path: operator for path, operator in known.items() if not path.endswith(NOT_ASKED)}
     defaults = Defaults(known)
+    left = dict(known)
     for state in stage.states():
-        for path in polled(known):
-            del known[path]
+        for path in polled(left):
+            del left[path]
         if state in THINGS:
             for member, thing in things:
                 with bpy.context.temp_override(area=None, region=None, **{member: thing}):
-                    for path in polled(known):
+                    for path in polled(left):
                         given.setdefault(path, (member, thing))
         for editor in EDITORS if state in MANY else EDITORS[:1]:
             if stage.show(editor):
                 with stage.within():
-                    running = polled(known)
+                    running = polled(left)
                     defaults.ask(sorted(running))
                     for path in running:
                         areas[path].add(stage.area.type)
-    with_scene = wanting_sequencer_scene(stage, {path: known[path] for path in areas if path in known})
-    for path, operator in sorted(known.items()):
-        member, thing = given.get(path, ("", None))
-        if member and not works(operator, member, thing):
-            member = ""
-        if areas[path] or member:
-            types = ["any"] if len(areas[path]) > MOST_AREAS else sorted(areas[path])
-            also = f"{SEQUENCER_SCENE} = scene" if path in with_scene else ""
-            write("operator_areas", path=path, areas=types, given=member, also=also)
+    given = {path: member for path, (member, thing) in given.items() if works(left.get(path), member, thing)}
+    found = operator_wants.find(write, known, areas, EDITORS, defaults)
+    for path in sorted(known):
+        needs, types, also = found.get(path, ({}, sorted(areas[path] if path in left else ()), [ALONE]))
+        if types or path in given:
+            more = {"needs": needs, "also": also} if types else {}
+            write("operator_areas", path=path, areas=types, given=given.get(path, ""), **more)
+        elif path in found:
+            write("operator_areas", path=path, needs=needs)
+        elif path in left:
+            write("operator_refused", path=path)
     defaults.write(write)

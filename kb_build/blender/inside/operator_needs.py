@@ -12,24 +12,15 @@ import traceback
 import bpy
 
 from . import operator_areas
-from .instances.making import (
-    SEQUENCER_SCENE,
-    activate,
-    add_object,
-    attempts,
-    choices,
-    mesh_object,
-    no_sequencer_scene,
-    object_of,
-    remove,
-)
+from .active_objects import Objects, can_run, collection_calls, empty_scene, modes
+from .instances.making import SEQUENCER_SCENE, attempts, choices, mesh_object, no_sequencer_scene, remove
 from .operator_defaults import Defaults
 
-MOST_CASES = 3
 # More modifiers than these are any modifier.
 MOST_MODIFIERS = 6
 MODIFIER = 'obj.modifiers.new("name", '
 THEN = " then "
+ANOTHER_SCENE = {"calls": ['bpy.data.scenes.new("name")']}
 NOT_ASKED = frozenset(
     {
         # It crashes Blender 5.0 where no object is active.
@@ -72,188 +63,10 @@ def operators():
     }
 
 
-def can_run(known):
-    """The operators of these whose poll says yes, in their order."""
-    found = []
-    for path, operator in known.items():
-        try:
-            if operator.poll():
-                found.append(path)
-        except Exception:
-            continue
-    return found
-
-
 def clear(scene):
     """Removes all other scenes and what is in any: Blender computes all that there is after each operator."""
     ids = [block for name in CLEARED for block in getattr(bpy.data, name, ()) if block != scene]
     bpy.data.batch_remove(ids)
-
-
-def empty_scene():
-    """A new scene in the window."""
-    scene = bpy.context.window.scene = bpy.data.scenes.new("new")
-    return scene
-
-
-def typed_object(kind):
-    """A new, active object of a type, with what people expect in it; None where this Blender cannot make one."""
-    if kind == "EMPTY":
-        return add_object(None)
-    if kind == "ARMATURE":
-        bpy.ops.object.armature_add()
-        return bpy.context.object
-    obj = object_of(kind)
-    if kind == "CURVE" and obj is not None:
-        obj.data.dimensions = "3D"  # as the Add menu makes them
-    return obj
-
-
-def modes(obj):
-    """Puts an object into each of its modes; yields their identifiers."""
-    for mode in choices("Object", "mode"):
-        try:
-            if obj.mode != mode:
-                bpy.ops.object.mode_set(mode=mode)
-        except (TypeError, RuntimeError):
-            continue
-        if obj.mode == mode:
-            yield mode
-    if obj.mode != "OBJECT":
-        bpy.ops.object.mode_set(mode="OBJECT")
-
-
-def wanted(passed, refused):
-    """Which names passed, of all that were tried: these, or the others; None where all did."""
-    if not refused:
-        return None
-    is_others = len(passed) > len(refused)
-    return {"names": refused if is_others else passed, "is_others": is_others}
-
-
-class Objects:
-    """With which types of active objects, in which modes, each operator can run."""
-
-    def __init__(self, defaults):
-        self.defaults = defaults
-        # type → all modes that were tried
-        self.tried = {}
-        # path → {type: modes in which it can run}
-        self.passed = {}
-        # Those that can run with a mesh object in Object Mode that is active and not selected.
-        self.unselected = set()
-        # Those that can run with an object once it was in its modes, and could not before: these have left something.
-        self.left = set()
-
-    def ask(self, known):
-        """Asks these operators, and those that can run again: what does not answer as before depends on more."""
-        self.passed = self.asked(known)
-        again = self.asked({path: known[path] for path in self.passed})
-        self.passed = {
-            path: found
-            for path, found in self.passed.items()
-            if again.get(path) == found and path not in self.left
-        }
-
-    def asked(self, known):
-        """Path → {type: modes in which it can run}, of these operators."""
-        passed = {}
-        for kind in choices("Object", "type"):
-            try:
-                obj = typed_object(kind)
-            except (TypeError, RuntimeError):
-                continue
-            if obj is None:
-                continue
-            activate(obj)
-            if kind == "MESH":
-                obj.select_set(False)
-                self.unselected.update(can_run(known))
-            obj.select_set(True)
-            self.tried[kind] = []
-            for mode in modes(obj):
-                self.tried[kind].append(mode)
-                found = can_run(known)
-                self.defaults.ask(found)
-                for path in found:
-                    passed.setdefault(path, {}).setdefault(kind, []).append(mode)
-            if "OBJECT" in self.tried[kind]:
-                self.left.update(
-                    path for path in can_run(known) if "OBJECT" not in passed.get(path, {}).get(kind, ())
-                )
-            remove(obj)
-        return passed
-
-    def free_needs(self, path):
-        """What an operator wants that can run in an empty scene; empty where it refused nothing."""
-        found = self.passed[path]
-        refusing = {
-            mode: [
-                kind for kind in self.tried if mode in self.tried[kind] and mode not in found.get(kind, ())
-            ]
-            for modes_tried in self.tried.values()
-            for mode in modes_tried
-        }
-        refused = [mode for mode, kinds in refusing.items() if kinds]
-        if not refused:
-            return {}
-        passed = [mode for mode in refusing if mode not in refused]
-        always = [mode for mode in refused if not any(mode in modes for modes in found.values())]
-        if always == refused:
-            return {"active": "any", "modes": wanted(passed, refused)}
-        some = [mode for mode in refused if mode not in always]
-        modes = {"names": always, "is_others": True} if always else None
-        return {"active": "any", "modes": modes, "modes_of_some": some}
-
-    def needs(self, path):
-        """What an operator wants that refuses in an empty scene."""
-        found = self.passed[path]
-        is_selected = "OBJECT" in found.get("MESH", ()) and path not in self.unselected
-        return {"active": "selected" if is_selected else "active", **self.cases(found)}
-
-    def cases(self, found):
-        """The types of objects, each with its modes."""
-        passed = {mode: None for modes_passed in found.values() for mode in modes_passed}
-        refused = {mode: None for kind in found for mode in self.tried[kind] if mode not in found[kind]}
-        if not passed.keys() & refused.keys():
-            return {"types": self.types(list(found)), "modes": wanted(list(passed), list(refused))}
-        by_modes = {}
-        for kind, modes_passed in found.items():
-            by_modes.setdefault(tuple(modes_passed), []).append(kind)
-        if len(by_modes) > MOST_CASES:
-            return {"types": self.types(list(found)), "in_some_modes": True}
-        cases = []
-        for has, kinds in by_modes.items():
-            refused = [mode for mode in self.tried[kinds[0]] if mode not in has]
-            cases.append({"types": kinds, "modes": wanted(list(has), refused)})
-        return {"cases": cases}
-
-    def types(self, kinds):
-        """Of which types, unless it is all."""
-        return wanted(kinds, [kind for kind in self.tried if kind not in kinds])
-
-
-def arguments(function):
-    """The required arguments of a collection's ``new`` as source; None where they are not names and choices."""
-    given = []
-    for item in function.parameters:
-        if not item.is_required or item.is_output:
-            continue
-        if item.type not in {"STRING", "ENUM"}:
-            return None
-        given.append(
-            '"name"' if item.type == "STRING" else repr(next(iter(item.enum_items.keys()), "")),
-        )
-    return ", ".join(given)
-
-
-def collection_calls(struct, text):
-    """The calls that add an element to each collection of a struct."""
-    for prop in struct.bl_rna.properties:
-        function = prop.srna.functions.get("new") if prop.type == "COLLECTION" and prop.srna else None
-        given = arguments(function) if function is not None and prop.identifier != "modifiers" else None
-        if given is not None:
-            yield f"{text}.{prop.identifier}.new({given})"
 
 
 def adding_calls(observer):
@@ -348,13 +161,15 @@ def added(path, mode, calls):
 
 def with_objects(write, known, _observer):
     """What operators want of which it is enough that an object is active, or nothing is: these leave ``known``."""
+    in_only_scene = {*can_run(known)}
     empty_scene()
     no_sequencer_scene()
     defaults = Defaults(known)
     free = Objects(defaults)
     free.ask({path: known.pop(path) for path in can_run(known)})
     for path in free.passed:
-        write("operator_needs", path=path, needs=free.free_needs(path))
+        needs = free.free_needs(path)
+        write("operator_needs", path=path, needs=needs if needs or path in in_only_scene else ANOTHER_SCENE)
     objects = Objects(defaults)
     objects.ask(known)
     for path in objects.passed:
@@ -397,14 +212,38 @@ def find_alone(write, skipped):
         find(write, (with_objects, with_areas), operators(), None, skipped)
 
 
+class Told:
+    """Writes records, and keeps of which operators."""
+
+    def __init__(self, write):
+        self.write = write
+        self.flush = write.flush
+        self.paths = set()
+
+    def __call__(self, record, **fields):
+        if record.startswith("operator_"):
+            self.paths.add(fields["path"])
+        self.write(record, **fields)
+
+
 def find_all(write, observer, skipped, begun):
-    """One ``operator_needs`` record for each operator of which it is known what it wants, if only nothing.
+    """What is known of what each operator wants: a record ``operator_needs``, if only nothing; ``operator_areas``, see
+    there; or ``operator_refused``, with ``is_unknown`` for one that was not asked, or answered now so, now so.
 
     ``begun`` does ``find_alone`` beside (see apart); without it, or where that ended Blender, all is done here.
     """
     if bpy.context.window is None:
         return
-    known = operators()
+    told, known = Told(write), operators()
+    paths = [*known, *(f"bpy.ops.{name}" for name in NOT_ASKED)]
+    find_told(told, known, observer, skipped, begun)
+    for path in sorted(paths):
+        if path not in told.paths:
+            write("operator_refused", path=path, is_unknown=True)
+
+
+def find_told(write, known, observer, skipped, begun):
+    """The records of operators that answered."""
     try:
         rows = [json.loads(line) for line in begun.lines()] if begun is not None else None
     except RuntimeError:

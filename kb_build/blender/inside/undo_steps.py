@@ -10,9 +10,10 @@ from contextlib import suppress
 
 import bpy
 
+from .active_objects import can_run, modes
 from .apart import apart, sent_apart
 from .instances.making import activate, mesh_object, remove
-from .operator_needs import can_run, modes, operators
+from .operator_needs import operators
 
 CALL = "bpy.ops.ed.undo_push()"
 

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import ast
+import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.flags import operator_also, operator_areas, operator_given, refused_nothing
-from kb_build.symbols.lines import operator_needs
+from kb_build.symbols.lines import TRIED, operator_needs
+from kb_build.symbols.records import REFUSED_ALL
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kb_build.symbols.needs import OperatorNeeds
     from kb_build.symbols.records import Symbol
     from kb_serve.recognise.resolving.chains import Chain
 
@@ -20,6 +25,7 @@ NO_OVERRIDE = (
 _WITH = "with bpy.context.temp_override"
 _ACTIVE = "bpy.context.view_layer.objects.active = ob"
 _SELECTED = "ob.select_set(True)"
+_OF_AREA = re.compile(r"\barea\.")  # a statement on the area
 # A name for what a member of the context is taken from.
 _THINGS = {"id": "ob", "point_cache": "modifier.point_cache", "edit_image": "image", "edit_text": "text"}
 # Without it, it bakes nothing and says that it did.
@@ -47,20 +53,40 @@ def context_for(operator: Symbol, like: str = "") -> str:
             f"{failed}operators like it take `{like}` in the context, here one that it can work on: "
             f"`{_WITH}({like}={_THINGS.get(like, like)}): {path}()`."
         )
+    if REFUSED_ALL in operator.flags:
+        return (
+            f"{failed}it took nothing of what was tried ({TRIED}). "
+            "What it wants is elsewhere in the interface, the scene or the file."
+        )
     return (
         f"{failed}it needs another mode, active object, selection or editor than the context has. "
         f"`{OVERRIDE}` can provide objects and editors, `bpy.ops.object.mode_set` a mode."
     )
 
 
-def _in_area(path: str, area: str) -> str:
-    """Lines that give an operator an area; ``any`` for the first that there is."""
+def _in_area(path: str, area: str, also: Sequence[str]) -> str:
+    """Lines that set what an operator wants besides, and give it an area; ``any`` for the first that there is."""
     areas = "bpy.context.window.screen.areas"
     found = f"{areas}[0]" if area == "any" else f"next(a for a in {areas} if a.type == '{area}')"
-    return (
-        f"`area = {found}`; `region = next(r for r in area.regions if r.type == 'WINDOW')`; "
-        f"`{_WITH}(area=area, region=region): {path}()`. Where there is no window, there is no area."
-    )
+    first = next((at for at, text in enumerate(also) if _OF_AREA.search(text)), len(also))
+    lines = [
+        *also[:first],
+        f"area = {found}",
+        *also[first:],
+        "region = next(r for r in area.regions if r.type == 'WINDOW')",
+        f"{_WITH}(area=area, region=region): {path}()",
+    ]
+    return f"{'; '.join(f'`{line}`' for line in lines)}. Where there is no window, there is no area."
+
+
+def _active_given(needs: OperatorNeeds | None) -> str:
+    """Lines that make an object active, and enter a mode, before an area is given."""
+    if needs is None or needs.active not in {"active", "selected"}:
+        return ""
+    mode = needs.mode_to_enter
+    entered = f"`bpy.ops.object.mode_set(mode='{mode}')`; " if mode else ""
+    selected = f"`{_SELECTED}`; " if needs.active == "selected" else ""
+    return f"`{_ACTIVE}`; {selected}{entered}"
 
 
 def _giving(operator: Symbol) -> str:
@@ -70,7 +96,7 @@ def _giving(operator: Symbol) -> str:
         given = f"`{_WITH}({member}={_THINGS.get(member, member)}): {path}({_ARGUMENTS.get(path, '')})`."
         return f"{given} {_INSTEAD.get(path, '')}".rstrip()
     if areas := operator_areas(operator):
-        return "".join(f"`{call}`; " for call in operator_also(operator)) + _in_area(path, areas[0])
+        return _active_given(operator.needs) + _in_area(path, areas[0], operator_also(operator))
     needs = operator.needs
     if needs is None or not needs.active:
         return ""

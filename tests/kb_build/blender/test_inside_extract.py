@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import re
@@ -14,9 +15,27 @@ import pytest
 from statements_in_blender import run_statements
 
 from kb_build.blender.extractor import extract_api
-from kb_build.symbols.flags import fillers, never_taken, refused_nothing, usual_default
-from kb_build.symbols.lines import operator_needs, type_text
-from kb_build.symbols.records import ENDS_BEFORE, ENDS_WITHOUT, WITHOUT_ACTIVE, WITHOUT_AREA, NewValue
+from kb_build.symbols.flags import (
+    fillers,
+    never_taken,
+    operator_active,
+    operator_also,
+    operator_areas,
+    refused_nothing,
+    usual_default,
+)
+from kb_build.symbols.lines import operator_needs, poll_line, type_text
+from kb_build.symbols.records import (
+    ALSO,
+    ENDS_BEFORE,
+    ENDS_WITHOUT,
+    NEEDS,
+    NOT_ENOUGH,
+    REFUSED_ALL,
+    WITHOUT_ACTIVE,
+    WITHOUT_AREA,
+    NewValue,
+)
 from simworlds.sandbox.runtime import find_runtime
 
 if TYPE_CHECKING:
@@ -688,6 +707,60 @@ told = {row["path"]: row.get("needs") or row.get("areas") for row in rows if "pa
 json.dump(told, open(sys.argv[2], "w"))
 os._exit(0)
 """
+# Run by this interpreter: whether operators can run in areas of types, with an object in a mode, and after statements.
+ASK_AREAS = """
+import json, os, sys, wave, bpy
+claims, answers = json.load(open(sys.argv[1])), []
+folder = os.path.dirname(sys.argv[2])
+names = {"bpy": bpy, "image_path": os.path.join(folder, "a.png"), "sound_path": os.path.join(folder, "a.wav")}
+image = bpy.data.images.new("asked", 8, 8)
+image.filepath_raw, image.file_format = names["image_path"], "PNG"
+image.save()
+with wave.open(names["sound_path"], "wb") as sound:
+    sound.setparams((1, 2, 8000, 0, "NONE", ""))
+    sound.writeframes(bytes(16000))
+window = bpy.context.window
+area = names["area"] = window.screen.areas[0]
+
+for kind, mode, types, statements, paths in claims:
+    missing = []
+    for area_type in types:
+        names["scene"] = window.scene = bpy.data.scenes.new("asked")
+        bpy.context.workspace.sequencer_scene = None
+        if kind:
+            if kind == "MESH":
+                bpy.ops.mesh.primitive_plane_add()
+            else:
+                bpy.ops.object.add(type=kind)
+            names["obj"] = bpy.context.object
+            if kind == "CURVE":
+                names["obj"].data.dimensions = "3D"
+        of_area = next((at for at, text in enumerate(statements) if "area." in text), len(statements))
+        for text in statements[:of_area]:
+            exec(text, names)
+        if mode:
+            bpy.ops.object.mode_set(mode=mode)
+        area.type = "CONSOLE" if area_type == "INFO" else "INFO"  # a new space
+        if area_type != "no area":
+            area.type = area_type
+        for text in statements[of_area:]:
+            exec(text, names)
+        region = next(region for region in area.regions if region.type == "WINDOW")
+        given = {"area": None, "region": None} if area_type == "no area" else {"area": area, "region": region}
+        with bpy.context.temp_override(window=window, screen=window.screen, **given):
+            for path in paths:
+                module, name = path.split(".")[2:]
+                if not getattr(getattr(bpy.ops, module), name).poll():
+                    missing.append([path, area_type])
+        if bpy.context.mode != "OBJECT":
+            bpy.ops.object.mode_set(mode="OBJECT")
+    answers.append(missing)
+json.dump(answers, open(sys.argv[2], "w"))
+os._exit(0)
+"""
+TEXT = '`area.spaces.active.text = bpy.data.texts.new("name")`'
+UVS = "an active object in mode 'EDIT', with `obj.data.uv_layers.new()`"
+HAIR = "obj.modifiers.new(\"name\", 'PARTICLE_SYSTEM').particle_system.settings.type = 'HAIR'"
 IN_EDIT_MODE = "bpy.ops.object.mode_set(mode='EDIT')"
 OBJECT, EDIT = "an active object", "an active object of type 'MESH' in mode 'EDIT'"
 OBJECT_MODE = "any active object or none in mode 'OBJECT'"
@@ -766,19 +839,90 @@ def test_operators_that_want_no_object_refuse_only_the_modes_that_they_are_said_
         ("geometry.color_attribute_remove", "an active object with what `obj.data.vertex_colors.new()` adds"),
         ("mesh.primitive_cube_add", ""),  # it runs in an empty scene
         ("view3d.view_selected", "an area of type VIEW_3D"),
-        ("anim.keyframe_insert", "an area"),
-        ("graph.clean", "an area of type DOPESHEET_EDITOR or GRAPH_EDITOR"),
+        ("anim.keyframe_insert", "an area of any type"),
+        (
+            "graph.clean",
+            "an area of type DOPESHEET_EDITOR or GRAPH_EDITOR and an active and selected object, with "
+            '`obj.keyframe_insert("location")`',
+        ),
         (
             "text.copy",
-            "`edit_text` in the context (`temp_override(edit_text=…)`), or an area of type TEXT_EDITOR",
+            "`edit_text` in the context (`temp_override(edit_text=…)`), or an area of type TEXT_EDITOR, with "
+            + TEXT,
         ),
-        ("text.select_all", "an area of type TEXT_EDITOR"),  # with a text alone it ends Blender
+        # With a text alone it ends Blender.
+        ("text.select_all", f"an area of type TEXT_EDITOR, with {TEXT}"),
+        ("text.start_find", "an area of type TEXT_EDITOR"),
+        ("mesh.knife_tool", "an area of type VIEW_3D and an active object of type 'MESH' in mode 'EDIT'"),
+        ("uv.select_box", f"an area of type IMAGE_EDITOR and {UVS}, then `area.ui_type = 'UV'`"),
+        ("particle.select_all", f"an active object in mode 'PARTICLE_EDIT' with what `{HAIR}` sets"),
+        (
+            "paint.face_select_more",
+            "an active object in mode 'VERTEX_PAINT'|'WEIGHT_PAINT'|'TEXTURE_PAINT' with what "
+            "`obj.data.use_paint_mask = True` sets",
+        ),
+        (
+            "grease_pencil.layer_remove",
+            "an active object of type 'GREASEPENCIL' with what `obj.data.layers.new(\"name\")` adds",
+        ),
+        ("scene.delete", 'what `bpy.data.scenes.new("name")` adds'),
         ("ptcache.bake", "`point_cache` in the context (`temp_override(point_cache=…)`)"),
         ("anim.clear_useless_actions", ""),  # which wants what no object has
     ],
 )
 def test_an_operator_says_what_it_wants(symbols: dict[str, Symbol], operator: str, needs: str) -> None:
     assert operator_needs(symbols[f"bpy.ops.{operator}"]) == needs
+
+
+def kind_and_mode(operator: Symbol) -> tuple[str, str]:
+    """The first type and mode of an active object that an operator is said to want; empty for none."""
+    needs = "".join(operator.flagged(NEEDS))
+    types, modes = operator_active(operator)
+    kind = "MESH" if types is None or types.takes("MESH") else types.names[0]
+    tried = ("OBJECT", "EDIT", *modes.names) if modes else ()
+    mode = next((mode for mode in tried if modes and modes.takes(mode)), "")
+    return (kind if needs.startswith("an active") else ""), mode
+
+
+def test_what_operators_are_said_to_want_in_areas_is_enough(
+    symbols: dict[str, Symbol], tmp_path: Path
+) -> None:
+    groups: dict[tuple[object, ...], list[str]] = {}
+    for path, symbol in symbols.items():
+        types = operator_areas(symbol)
+        if not types or types == ("any",) or ALSO + NOT_ENOUGH in symbol.flags:
+            continue
+        said = (*kind_and_mode(symbol), types, operator_also(symbol))
+        groups.setdefault(said, []).append(path)
+    answers = ask_blender(ASK_AREAS, tmp_path, [[*said, paths] for said, paths in groups.items()])
+    assert sum(map(len, groups.values())) > 600
+    assert [missing for missing in answers if missing] == []
+
+
+def test_areas_of_any_type_are_those_of_all(symbols: dict[str, Symbol], tmp_path: Path) -> None:
+    anywhere = [path for path, symbol in symbols.items() if operator_areas(symbol) == ("any",)]
+    types = sorted({kind for symbol in symbols.values() for kind in operator_areas(symbol)} - {"any"})
+    free = [path for path in anywhere if not symbols[path].flagged(NEEDS)]
+    ((*missing,),) = ask_blender(ASK_AREAS, tmp_path, [["", "", types, [], free]])
+    assert (len(types) > 12, len(free) > 20, missing) == (True, True, [])
+
+
+def test_operators_that_took_nothing_refuse_scenes_and_areas(
+    symbols: dict[str, Symbol], tmp_path: Path
+) -> None:
+    refused = [path for path, symbol in symbols.items() if REFUSED_ALL in symbol.flags]
+    types = sorted({kind for symbol in symbols.values() for kind in operator_areas(symbol)} - {"any"})
+    claims = [[kind, "", ["no area", *types], [], refused] for kind in ("", "MESH", "ARMATURE")]
+    refusing = {tuple(row) for row in itertools.product(refused, ("no area", *types))}
+    for missing in ask_blender(ASK_AREAS, tmp_path, claims):
+        assert sorted(refusing - {tuple(row) for row in missing}) == []
+    assert len(refused) > 100
+
+
+def test_nothing_is_said_only_of_operators_that_refused_nothing(symbols: dict[str, Symbol]) -> None:
+    silent = [symbol for symbol in symbols.values() if symbol.kind == "operator" and not poll_line(symbol)]
+    assert len(silent) > 300
+    assert [symbol.path for symbol in silent if not refused_nothing(symbol)] == []
 
 
 def test_operators_are_asked_here_where_asking_them_beside_ended_blender(

@@ -238,7 +238,7 @@ def test_an_operator_comes_after_what_its_poll_asks_for(reader: BaseReader) -> N
 
 
 def test_what_never_ran_without_a_window_is_no_step(reader: BaseReader) -> None:
-    names = TopicNames(frozenset({"sound"}), (), operators={"bpy.ops.sound.pack": 9.0})
+    names = TopicNames(frozenset({"world"}), (), operators={"bpy.ops.world.convert_volume_to_mesh": 9.0})
     assert _told(reader, names) == []
 
 

@@ -28,6 +28,22 @@ if TYPE_CHECKING:
         ("mesh.subdivide", "mode_set(mode='EDIT')"),
         ("view3d.snap_cursor_to_center", "a.type == 'VIEW_3D'"),
         ("mesh.loop_select", "a.type == 'VIEW_3D'"),
+        (
+            "mesh.knife_tool",
+            "objects.active = ob`; `bpy.ops.object.mode_set(mode='EDIT')`; `area = next(a for a in",
+        ),
+        (
+            "text.insert",
+            "'TEXT_EDITOR')`; `area.spaces.active.text = bpy.data.texts.new(\"name\")`; `region = next(",
+        ),
+        (
+            "graph.smooth",
+            "`bpy.context.view_layer.objects.active = ob`; `ob.select_set(True)`; `obj.keyframe_insert(",
+        ),
+        (
+            "paintcurve.new",
+            "it took nothing of what was tried (objects of every type in every mode, areas of",
+        ),
         ("anim.keyframe_insert", "`area = bpy.context.window.screen.areas[0]`"),
         ("asset.mark", "`with bpy.context.temp_override(id=ob): bpy.ops.asset.mark()`."),
         (
