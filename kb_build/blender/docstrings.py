@@ -381,6 +381,11 @@ def _parameters(signature: str, fields: _Fields) -> tuple[Parameter, ...]:
         for known in (fields.texts, fields.types):
             if misnamed[0] in known:
                 known[undescribed[0]] = known.pop(misnamed[0])
+    untyped = [name for name in fields.texts if name not in fields.types]
+    undescribed = [name for name in fields.types if name not in fields.texts]
+    if not parameters and len(untyped) == len(undescribed) == 1:
+        # Of two names in the docstring alone, one is a slip: it describes the one, and has the type of the other.
+        fields.types[untyped[0]] = fields.types.pop(undescribed[0])
     for name in fields.texts | fields.types:
         parameters.setdefault(name, Parameter(name=name))
     return tuple(

@@ -14,6 +14,7 @@ from kb_build.blender.call_texts import (
     by_place,
     by_place_up_to,
     call_text,
+    requiring,
     with_sets,
 )
 from kb_build.blender.context_members import name_classes
@@ -55,6 +56,7 @@ _LISTED_BY_MODULE = re.compile(r"One of the builtin \w+ names\.?")
 _LISTED_NAME = re.compile(r"^\*\*`([A-Z][A-Z0-9_]*)`\*\*", re.MULTILINE)
 # How ``inside/keywords.py`` marks what it finds.
 _NO_KEYWORDS, _BY_PLACE, _BY_NAME, _OPTIONAL = "no-keywords", "by-place:", "by-name:", "all-optional"
+_REQUIRES = "requires:"
 _METHOD_FLAGS = {"classmethod": ("classmethod",), "staticmethod": ("static",)}
 # RNA calls each of these a NodeTree; Blender accepts one kind of tree only, which decides the nodes below.
 _TREES = {
@@ -206,6 +208,12 @@ def _without_roles(text: str) -> str:
     return _ROLE.sub(r"`\1`", text)
 
 
+def _requiring(parsed: Docstring, least: int) -> Docstring:
+    """A docstring whose first few parameters are required."""
+    parameters = (replace(p, required=place < least) for place, p in enumerate(parsed.parameters))
+    return replace(parsed, parameters=tuple(parameters))
+
+
 def _symbol(row: dict[str, Any]) -> Symbol:
     """One line of the extract, its docstring read and its call spelled out."""
     parsed = read_docstring(row) if row.get("docstring") or row.get("signature") else None
@@ -225,6 +233,9 @@ def _symbol(row: dict[str, Any]) -> Symbol:
         fields["description"] = parsed.description
         fields["type"] = parsed.type or row.get("type", "")
         flags = row.get("flags", ())
+        if least := next((flag.removeprefix(_REQUIRES) for flag in flags if flag.startswith(_REQUIRES)), ""):
+            parsed = _requiring(parsed, int(least))
+            call = requiring(call, [parameter.name for parameter in parsed.parameters], int(least))
         call = by_place(call) if _NO_KEYWORDS in flags else call
         if most := next((flag.removeprefix(_BY_PLACE) for flag in flags if flag.startswith(_BY_PLACE)), ""):
             call = by_place_up_to(call, int(most))
