@@ -45,6 +45,7 @@ _LISTED = re.compile(r"\b(?:enum|string|str) in ([\[{(][^\[\]{}()]*[\]})])", re.
 _BMESH_ELEMENTS = {"vert": "BMVert", "verts": "BMVert", "edges": "BMEdge", "faces": "BMFace"}
 _REFERENCE_ROLES = ("class", "func", "meth", "attr", "data", "mod", "exc", "const", "obj", "doc")
 _QUIET = 5
+_INIT = "__init__"
 
 
 @dataclass(frozen=True, slots=True)
@@ -431,7 +432,25 @@ def parse_docstring(text: str, signature: str = "") -> Docstring:
     with states_when_entered():
         parser.parse(_SPHINX.sub(rf"\1{_OWN}", body), document)
     parsed = _overloaded(document.children, calls or [signature], slots)
-    constructor = next((member.docstring for member in parsed.members if member.name == "__init__"), None)
+    return _called_as_constructed(parsed)
+
+
+def constructed_by(parsed: Docstring, cls: str) -> Docstring:
+    """The docstring of a class in which a method called like the class itself is what it is: the constructor."""
+    if not any(member.name == cls for member in parsed.members):
+        return parsed
+    members = (_constructor(member) if member.name == cls else member for member in parsed.members)
+    return _called_as_constructed(replace(parsed, members=tuple(members)))
+
+
+def _constructor(member: Member) -> Member:
+    signature = f"{_INIT}({member.docstring.signature.partition('(')[2]}"
+    return Member(member.kind, _INIT, replace(member.docstring, signature=signature))
+
+
+def _called_as_constructed(parsed: Docstring) -> Docstring:
+    """The docstring of a class with the call of its constructor, if it has none of its own."""
+    constructor = next((member.docstring for member in parsed.members if member.name == _INIT), None)
     if constructor and not parsed.signature:
         return replace(parsed, signature=constructor.signature, parameters=constructor.parameters)
     return parsed

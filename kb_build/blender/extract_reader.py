@@ -18,7 +18,7 @@ from kb_build.blender.call_texts import (
     with_sets,
 )
 from kb_build.blender.context_members import name_classes
-from kb_build.blender.docstrings import parse_docstring
+from kb_build.blender.docstrings import constructed_by, parse_docstring
 from kb_build.blender.manual_links import manual_links
 from kb_build.blender.owners_animated import unmark_unanimated
 from kb_build.blender.tried_facts import ADDED, add_items
@@ -197,6 +197,8 @@ def _completed(parameters: Iterable[Parameter], known: Iterable[Parameter]) -> t
 def read_docstring(row: Mapping[str, Any]) -> Docstring:
     """What the docstring of a line of the extract says; it is kept."""
     docstring, signature = row.get("docstring", ""), row.get("signature", "")
+    if row.get("kind") == "class":
+        return constructed_by(parse_docstring(docstring, signature), last_name(row["path"]))
     if not row.get(_OF_MODULE) or not signature.startswith(_SELF):
         return parse_docstring(docstring, _BOUND.sub("(", signature, count=1))
     # A function of a module that panels call with themselves: it takes what is called so as any other argument.
@@ -283,7 +285,7 @@ def _described_members(rows: Iterable[dict[str, Any]]) -> Iterator[Symbol]:
     """Methods described only in the docstring of their class, as Freestyle's; the reference lists them."""
     for row in rows:
         if row["kind"] == "class" and row.get("docstring"):
-            for member in parse_docstring(row["docstring"], row.get("signature", "")).members:
+            for member in read_docstring(row).members:
                 told, call = member.docstring, member.docstring.signature
                 is_call = "(" in call
                 yield Symbol(
