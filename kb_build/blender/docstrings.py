@@ -44,6 +44,7 @@ _LITERAL = re.compile(r"\bLiteral(\[[^\[\]]*\])")
 _LISTED = re.compile(r"\b(?:enum|string|str) in ([\[{(][^\[\]{}()]*[\]})])", re.IGNORECASE)
 _BMESH_ELEMENTS = {"vert": "BMVert", "verts": "BMVert", "edges": "BMEdge", "faces": "BMFace"}
 _REFERENCE_ROLES = ("class", "func", "meth", "attr", "data", "mod", "exc", "const", "obj", "doc")
+_TWO_STOPS = re.compile(r"(?<!\.)\.\.$")  # of a sentence that was put before another full stop
 _QUIET = 5
 _INIT = "__init__"
 
@@ -242,6 +243,7 @@ def _blocks(children: Sequence[nodes.Node]) -> str:
 
 
 def _read_field(name: str, body: str, fields: _Fields) -> None:
+    body = _TWO_STOPS.sub(".", body)
     keyword, _, argument = name.partition(" ")
     if keyword in {"arg", "param", "parameter", "argument", "key", "keyword"}:
         kind, _, argument = argument.rpartition(" ")

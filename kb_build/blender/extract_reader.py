@@ -51,6 +51,7 @@ _OF_MODULE, _SELF = (
 _BOUND = re.compile(r"^\((?:self|cls)\b(?:, /)?(?:, )?")  # what a method gets from the dot before it
 _ROLE = re.compile(r":class:`~?([^`]+)`")  # which some of RNA's descriptions have
 _SHARED_ENUM = re.compile(r"\brna_enum_\w+")
+_DOUBLE = re.compile(r"``([^`]+)``")
 # Values that are listed where the module is described: ``**`UNIFORM_COLOR`**: Attributes…``.
 _LISTED_BY_MODULE = re.compile(r"One of the builtin \w+ names\.?")
 _LISTED_NAME = re.compile(r"^\*\*`([A-Z][A-Z0-9_]*)`\*\*", re.MULTILINE)
@@ -207,7 +208,8 @@ def read_docstring(row: Mapping[str, Any]) -> Docstring:
 
 
 def _without_roles(text: str) -> str:
-    return _ROLE.sub(r"`\1`", text)
+    """A description of RNA's without the marks of reST that some have."""
+    return _DOUBLE.sub(r"`\1`", _ROLE.sub(r"`\1`", text)) if "`" in text else text
 
 
 def _requiring(parsed: Docstring, least: int) -> Docstring:
@@ -226,7 +228,7 @@ def _symbol(row: dict[str, Any]) -> Symbol:
     path, kind = row["path"], row["kind"]
     fields["parameters"] = parameters = tuple(
         replace(parameter, description=_without_roles(parameter.description))
-        if ":class:" in parameter.description
+        if "`" in parameter.description
         else parameter
         for parameter in fields.get("parameters", ())
     )

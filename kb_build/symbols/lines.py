@@ -134,20 +134,22 @@ def area_text(types: Sequence[str]) -> str:
 
 
 def refusal_lines(symbol: Symbol) -> list[str]:
-    """Which calls of a function were refused although their arguments are those that it asks for, a line each.
-
-    Where both a value and what takes it decide, that is said with the value (see taken_where). What ends Blender comes
-    first.
-    """
-    fatal = [
-        f"while `{needed}` is None, which ends Blender: set it" for needed in symbol.flagged(ENDS_WITHOUT)
-    ]
-    fatal += [
-        f"without an undo step, as in a Blender without a window, which ends it: `{call}` before the mode is entered"
+def fatal_lines(symbol: Symbol) -> list[str]:
+    """When a call of a function or an operator crashes Blender, and what prevents it, a line each."""
+    unset = [f"while `{needed}` is None: set it before" for needed in symbol.flagged(ENDS_WITHOUT)]
+    return unset + [
+        "where there is no undo step yet, as in a Blender without a window: make one with "
+        f"`{call}`, and only then enter the mode"
         for call in symbol.flagged(ENDS_BEFORE)
     ]
+
+
+    """Which calls of a function were refused although their arguments are those that it asks for, a line each.
+
+    Where both a value and what takes it decide, that is said with the value (see taken_where).
+    """
     own = [f"taken only by {_REGISTERED}"] if _is_of_own_nodes(symbol) else []
-    return [*fatal, *own] + [
+    return own + [
         _refusal_text(refusal)
         for refusal in symbol.refusals
         if refusal.is_explained and not (refusal.values and refusal.by)
