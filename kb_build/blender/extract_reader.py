@@ -235,7 +235,7 @@ def _symbol(row: dict[str, Any]) -> Symbol:
     if parsed is not None:
         call = with_sets(parsed.signature, parameters)
         fields["description"] = parsed.description
-        fields["type"] = parsed.type or row.get("type", "")
+        fields["type"] = "" if kind == "class" else parsed.type or row.get("type", "")
         flags = row.get("flags", ())
         if least := next((flag.removeprefix(_REQUIRES) for flag in flags if flag.startswith(_REQUIRES)), ""):
             parsed = _requiring(parsed, int(least))
