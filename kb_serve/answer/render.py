@@ -20,7 +20,7 @@ from kb_serve.answer.place_lines import place_lines, reached_as
 from kb_serve.answer.property_facts import facts
 from kb_serve.answer.shown_uses import use_text
 from kb_serve.answer.switches import switch_lines
-from kb_serve.answer.swizzles import without_swizzles
+from kb_serve.answer.swizzles import swizzle_text, without_swizzles
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -155,7 +155,7 @@ class MarkdownRenderer:
         label = f"**{symbol.label}** — " if symbol.label else ""
         if text := (label + symbol.description.strip()).removesuffix(" — "):
             lines.append(text)
-        if line := " · ".join(facts(symbol)):
+        if line := " · ".join(filter(None, (*facts(symbol), swizzle_text(symbol, self.reader)))):
             lines.append(line)
         lines.extend(asked_of_classes(symbol))
         if needs := operator_needs(symbol):
