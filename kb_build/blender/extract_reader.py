@@ -21,6 +21,7 @@ from kb_build.blender.context_members import name_classes
 from kb_build.blender.docstrings import constructed_by, parse_docstring
 from kb_build.blender.manual_links import manual_links
 from kb_build.blender.owners_animated import unmark_unanimated
+from kb_build.blender.same_values import mark_same_values
 from kb_build.blender.tried_facts import ADDED, add_items
 from kb_build.errors import ExtractError
 from kb_build.index.creation import with_whole_calls
@@ -50,8 +51,8 @@ _OF_MODULE, _SELF = (
 )  # how ``inside/modules.py`` marks functions of modules written in Python
 _BOUND = re.compile(r"^\((?:self|cls)\b(?:, /)?(?:, )?")  # what a method gets from the dot before it
 _ROLE = re.compile(r":class:`~?([^`]+)`")  # which some of RNA's descriptions have
-_SHARED_ENUM = re.compile(r"\brna_enum_\w+")
 _DOUBLE = re.compile(r"``([^`]+)``")
+_SHARED_ENUM = re.compile(r"\brna_enum_\w+")
 # Values that are listed where the module is described: ``**`UNIFORM_COLOR`**: Attributes…``.
 _LISTED_BY_MODULE = re.compile(r"One of the builtin \w+ names\.?")
 _LISTED_NAME = re.compile(r"^\*\*`([A-Z][A-Z0-9_]*)`\*\*", re.MULTILINE)
@@ -352,6 +353,7 @@ def read_extract(path: Path) -> Extract:
     _name_active_items(raw.symbols)
     name_classes(raw.symbols)
     unmark_unanimated(raw.symbols)
+    mark_same_values(raw.symbols)
     _substitute(raw.symbols.values())
     described = [*_described_members(raw.symbols.values())]
     symbols = {row_path: _symbol(row) for row_path, row in raw.symbols.items()}

@@ -31,7 +31,7 @@ from . import (
     undo_steps,
 )
 from .apart import Beside, can_work_apart
-from .instances import evaluated, limits, new_things, own_names, pointer_fillers, startup
+from .instances import context_modes, evaluated, limits, new_things, own_names, pointer_fillers, startup
 from .instances.neighbours import Neighbours
 from .instances.observer import Observer
 from .wire import Writer
@@ -153,6 +153,7 @@ STEPS = (
     # Of enumerations of which the instances have told their items.
     ("items in sources", lambda write, _found: source_items.find_all(write)),
     ("refusals", write_begun),
+    ("modes of the context", lambda _write, found: context_modes.find_all(found["observer"])),
 )
 
 
