@@ -13,6 +13,7 @@ from kb_serve.answer.arguments import argument_lines, arguments, operator_call
 from kb_serve.answer.asked_values import ASKED_NOTHING
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.enum_items import item_lines
+from kb_serve.answer.outcomes import outcomes
 from kb_serve.answer.own_classes import asked_of_classes, definition
 from kb_serve.answer.pages import passage_block
 from kb_serve.answer.panel_lines import panel_lines
@@ -158,6 +159,7 @@ class MarkdownRenderer:
         if line := " · ".join(filter(None, (*facts(symbol), swizzle_text(symbol, self.reader)))):
             lines.append(line)
         lines.extend(asked_of_classes(symbol))
+        lines.extend(outcomes(symbol))
         if needs := operator_needs(symbol):
             lines.append(f"Of all that was tried, its poll takes {needs}.")
         lines.extend(self._calls_in_areas(symbol))

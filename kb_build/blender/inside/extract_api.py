@@ -18,6 +18,7 @@ import bpy
 from . import (
     addon_names,
     context,
+    given_nothing,
     left_out,
     modules,
     nodes,
@@ -29,6 +30,7 @@ from . import (
     rna,
     source_items,
     undo_steps,
+    windowless,
 )
 from .apart import Beside, can_work_apart
 from .instances import context_modes, evaluated, limits, new_things, own_names, pointer_fillers, startup
@@ -101,6 +103,7 @@ def start_beside(_write, found):
             left_out.find_all(write)
             undo_steps.find_all(write)
             reached_modes.find_all(write)
+            windowless.find_all(write)
 
         found["refusals"] = Beside("refusals", tried)
         found["addons"] = Beside("addons", addon_names.write_all)
@@ -117,6 +120,7 @@ def write_begun(write, found):
 STEPS = (
     ("start beside", start_beside),
     ("classes", write_rna),
+    ("given nothing", lambda write, found: given_nothing.find_all(write, found["structs"])),
     ("operators", lambda write, _found: operators.write_all(write)),
     ("names", lambda _write, found: own_names.look_at_start(found["observer"])),
     ("start", lambda _write, found: startup.look_at_start(found["observer"])),

@@ -43,7 +43,7 @@ def sounds():
     """A sound, a sequence and an entry of it; as many of them as this Blender makes."""
     made = []
     with suppress(Exception):
-        import aud  # noqa: PLC0415 - some builds have none
+        import aud
 
         made.append(aud.Sound.sine(440))
         made.append(aud.Sequence())
