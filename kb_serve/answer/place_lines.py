@@ -45,10 +45,11 @@ def place_lines(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
         yield f'items by index, or by their `{key}`: `{symbol.name}["…"]`'
     if symbol.trees:
         yield "node of: " + ", ".join(symbol.trees)
-    elif symbol.kind == "class" and _is_node(symbol.path, reader):
-        alike = (reader.symbol(path) for path in alike_nodes(symbol.name))
-        taken = ", ".join(f"`{node.name}`" for node in alike if node and node.trees)
-        yield "no node tree takes it: `nodes.new` refuses it" + (f"; it takes {taken}" if taken else "")
+    elif (node := _owning_class(symbol, reader)) and _is_taken_nowhere(node, symbol, reader):
+        alike = (reader.symbol(path) for path in alike_nodes(node.name))
+        taken = ", ".join(f"`{other.name}`" for other in alike if other and other.trees)
+        it = "it" if node is symbol else f"a `{node.name}`"
+        yield f"no node tree takes {it}: `nodes.new` refuses it" + (f"; it takes {taken}" if taken else "")
     version, lacked = reader.arrival(symbol.path)
     if version:
         yield f"since Blender {version}" + (f" or a little before ({lacked} lacks it)" if lacked else "")
@@ -100,6 +101,13 @@ def _empty_before(cls: Symbol, reader: BaseReader) -> str:
         return ""
     if tree := _assigned(pointer, reader):
         return f"; `{pointer.name}` is {default_text(pointer)}: assign `{tree}`"
+def _is_taken_nowhere(node: Symbol, symbol: Symbol, reader: BaseReader) -> bool:
+    """Whether a symbol is a class of nodes that no tree takes, or only belongs to such a one: not to a base class."""
+    if node.kind != "class" or node.trees or not _is_node(node.path, reader):
+        return False
+    return node is symbol or not reader.subclasses(node.path)
+
+
     is_told = fillers(pointer) or pointer.type == "collection"
     return f"; `{pointer.name}` is {default_text(pointer)}" if is_told else ""
 
