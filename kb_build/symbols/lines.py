@@ -33,6 +33,7 @@ from kb_build.symbols.records import (
     LOCKED_WITH,
     NEEDS,
     NEVER_BY_IDENTIFIER,
+    NONE_ON_SOME,
     NOT_TAKEN,
     SHOWN_WHEN,
     STARTUP,
@@ -133,7 +134,6 @@ def area_text(types: Sequence[str]) -> str:
     return "an area" if "any" in types else f"an area of type {' or '.join(types)}"
 
 
-def refusal_lines(symbol: Symbol) -> list[str]:
 def fatal_lines(symbol: Symbol) -> list[str]:
     """When a call of a function or an operator crashes Blender, and what prevents it, a line each."""
     unset = [f"while `{needed}` is None: set it before" for needed in symbol.flagged(ENDS_WITHOUT)]
@@ -144,6 +144,7 @@ def fatal_lines(symbol: Symbol) -> list[str]:
     ]
 
 
+def refusal_lines(symbol: Symbol) -> list[str]:
     """Which calls of a function were refused although their arguments are those that it asks for, a line each.
 
     Where both a value and what takes it decide, that is said with the value (see taken_where).
@@ -267,6 +268,8 @@ def default_text(symbol: Symbol) -> str:
     """What new ones have, in which kinds and modes they differ, and RNA's default where it is another."""
     if empty := empty_when_new(symbol):
         return _empty_text(symbol, empty)
+    if NONE_ON_SOME in symbol.flags:
+        return f"`None` on some kinds of a new {symbol.owner.rpartition('.')[2]}"
     if EMPTY in symbol.flags:
         return f"empty (new {last_name(symbol.owner)})"
     usual = [new for new in symbol.new_values if not new.when]

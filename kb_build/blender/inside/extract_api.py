@@ -123,6 +123,7 @@ STEPS = (
     ("given nothing", lambda write, found: given_nothing.find_all(write, found["structs"])),
     ("operators", lambda write, _found: operators.write_all(write)),
     ("names", lambda _write, found: own_names.look_at_start(found["observer"])),
+    ("present", lambda write, found: startup.write_present(write, found["observer"])),
     ("start", lambda _write, found: startup.look_at_start(found["observer"])),
     (
         "nodes",
@@ -152,12 +153,12 @@ STEPS = (
             write, found["observer"], found["skipped"], found.get("needs")
         ),
     ),
+    ("modes of the context", lambda _write, found: context_modes.find_all(found["observer"])),
     ("neighbours", lambda write, found: found["neighbours"].write(write)),
     ("instances", lambda write, found: found["observer"].write(write)),
     # Of enumerations of which the instances have told their items.
     ("items in sources", lambda write, _found: source_items.find_all(write)),
     ("refusals", write_begun),
-    ("modes of the context", lambda _write, found: context_modes.find_all(found["observer"])),
 )
 
 
