@@ -55,6 +55,7 @@ _TOLD = {
     "NodeTreeInterface": ('bpy.data.node_groups["Geometry Nodes"].interface', 1),
 }
 _SOCKET = "NodeSocket"
+_MATERIAL = "Material"
 _NEVER_ACTIVE = frozenset({"Nodes"})  # none is, of those that scripts make
 # Objects have them too, but only chains of bones are moved by them.
 _OF_BONES = ("KinematicConstraint", "SplineIKConstraint")
@@ -182,15 +183,26 @@ def _place(expressions: dict[str, str], graph: _Graph, places: Mapping[str, str]
             expressions[cls] = f"{expressions['PoseBone']}.constraints{_key(cls, graph)}"
     # A shader's nodes live in a material, where there are others like it; some in the tree of another data-block.
     for cls in (cls for cls, trees in graph.trees.items() if "ShaderNodeTree" in trees):
-        holder = places.get(cls, "Material")
+        holder = places.get(cls, _MATERIAL)
         expressions[cls] = f"{expressions.get(holder, holder.lower())}.node_tree.nodes{_key(cls, graph)}"
-    # A socket, on a node that has one like it: RNA's way leads to any node, and to the trees that take least of them.
-    for cls, owners in graph.sockets.items():
-        known = [(owner, subscript) for owner, subscript in owners if owner in expressions]
-        of_shaders = any("ShaderNodeTree" in graph.trees.get(owner, ()) for owner, _ in known)
-        if cls in expressions and known and not of_shaders:
-            owner, subscript = min(known, key=lambda found: "inputs" not in found[1])
+    # A socket, on a node that has one like it: RNA's way leads to any node. Those of no node have no way.
+    for cls in graph.below(_SOCKET):
+        known = [
+            (owner, subscript) for owner, subscript in graph.sockets.get(cls, ()) if owner in expressions
+        ]
+        if cls in expressions and known:
+            owner, subscript = min(known, key=lambda found: _distance(*found, graph, places))
             expressions[cls] = f"{expressions[owner]}.{subscript}"
+        elif not graph.derived.get(cls) and graph.sockets:
+            expressions.pop(cls, None)
+
+
+def _distance(node: str, subscript: str, graph: _Graph, places: Mapping[str, str]) -> tuple[bool, ...]:
+    """How far a socket of a node is from being the one to show: those of nodes that are there from the start are best,
+    a material's first, then those of shaders, and inputs.
+    """
+    is_of_shaders = "ShaderNodeTree" in graph.trees.get(node, ())
+    return places.get(node) != _MATERIAL, node not in places, not is_of_shaders, "inputs" not in subscript
 
 
 def reached_expressions(

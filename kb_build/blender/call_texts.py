@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import split_arguments
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from kb_build.symbols.records import Default, Parameter
 
@@ -49,6 +49,12 @@ def call_text(name: str, parameters: Iterable[Parameter], *, marked: bool = Fals
         else:
             shown.append(f"{parameter.name}={python_value(parameter.default)}")
     return f"{name}({', '.join(shown)})"
+
+
+def requiring(call: str, names: Sequence[str], required: int) -> str:
+    """A call's text without arguments, with these: the first ones are required, and others may be left out."""
+    shown = (name if place < required else f"{name}=..." for place, name in enumerate(names))
+    return f"{call.partition('(')[0]}({', '.join(shown)})"
 
 
 def with_sets(call: str, parameters: Iterable[Parameter]) -> str:

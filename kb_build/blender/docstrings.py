@@ -44,7 +44,9 @@ _LITERAL = re.compile(r"\bLiteral(\[[^\[\]]*\])")
 _LISTED = re.compile(r"\b(?:enum|string|str) in ([\[{(][^\[\]{}()]*[\]})])", re.IGNORECASE)
 _BMESH_ELEMENTS = {"vert": "BMVert", "verts": "BMVert", "edges": "BMEdge", "faces": "BMFace"}
 _REFERENCE_ROLES = ("class", "func", "meth", "attr", "data", "mod", "exc", "const", "obj", "doc")
+_TWO_STOPS = re.compile(r"(?<!\.)\.\.$")  # of a sentence that was put before another full stop
 _QUIET = 5
+_INIT = "__init__"
 
 
 @dataclass(frozen=True, slots=True)
@@ -241,6 +243,7 @@ def _blocks(children: Sequence[nodes.Node]) -> str:
 
 
 def _read_field(name: str, body: str, fields: _Fields) -> None:
+    body = _TWO_STOPS.sub(".", body)
     keyword, _, argument = name.partition(" ")
     if keyword in {"arg", "param", "parameter", "argument", "key", "keyword"}:
         kind, _, argument = argument.rpartition(" ")
@@ -381,6 +384,11 @@ def _parameters(signature: str, fields: _Fields) -> tuple[Parameter, ...]:
         for known in (fields.texts, fields.types):
             if misnamed[0] in known:
                 known[undescribed[0]] = known.pop(misnamed[0])
+    untyped = [name for name in fields.texts if name not in fields.types]
+    undescribed = [name for name in fields.types if name not in fields.texts]
+    if not parameters and len(untyped) == len(undescribed) == 1:
+        # Of two names in the docstring alone, one is a slip: it describes the one, and has the type of the other.
+        fields.types[untyped[0]] = fields.types.pop(undescribed[0])
     for name in fields.texts | fields.types:
         parameters.setdefault(name, Parameter(name=name))
     return tuple(
@@ -426,7 +434,25 @@ def parse_docstring(text: str, signature: str = "") -> Docstring:
     with states_when_entered():
         parser.parse(_SPHINX.sub(rf"\1{_OWN}", body), document)
     parsed = _overloaded(document.children, calls or [signature], slots)
-    constructor = next((member.docstring for member in parsed.members if member.name == "__init__"), None)
+    return _called_as_constructed(parsed)
+
+
+def constructed_by(parsed: Docstring, cls: str) -> Docstring:
+    """The docstring of a class in which a method called like the class itself is what it is: the constructor."""
+    if not any(member.name == cls for member in parsed.members):
+        return parsed
+    members = (_constructor(member) if member.name == cls else member for member in parsed.members)
+    return _called_as_constructed(replace(parsed, members=tuple(members)))
+
+
+def _constructor(member: Member) -> Member:
+    signature = f"{_INIT}({member.docstring.signature.partition('(')[2]}"
+    return Member(member.kind, _INIT, replace(member.docstring, signature=signature))
+
+
+def _called_as_constructed(parsed: Docstring) -> Docstring:
+    """The docstring of a class with the call of its constructor, if it has none of its own."""
+    constructor = next((member.docstring for member in parsed.members if member.name == _INIT), None)
     if constructor and not parsed.signature:
         return replace(parsed, signature=constructor.signature, parameters=constructor.parameters)
     return parsed

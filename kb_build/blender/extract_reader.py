@@ -14,12 +14,14 @@ from kb_build.blender.call_texts import (
     by_place,
     by_place_up_to,
     call_text,
+    requiring,
     with_sets,
 )
 from kb_build.blender.context_members import name_classes
-from kb_build.blender.docstrings import parse_docstring
+from kb_build.blender.docstrings import constructed_by, parse_docstring
 from kb_build.blender.manual_links import manual_links
 from kb_build.blender.owners_animated import unmark_unanimated
+from kb_build.blender.same_values import mark_same_values
 from kb_build.blender.tried_facts import ADDED, add_items
 from kb_build.errors import ExtractError
 from kb_build.index.creation import with_whole_calls
@@ -49,12 +51,14 @@ _OF_MODULE, _SELF = (
 )  # how ``inside/modules.py`` marks functions of modules written in Python
 _BOUND = re.compile(r"^\((?:self|cls)\b(?:, /)?(?:, )?")  # what a method gets from the dot before it
 _ROLE = re.compile(r":class:`~?([^`]+)`")  # which some of RNA's descriptions have
+_DOUBLE = re.compile(r"``([^`]+)``")
 _SHARED_ENUM = re.compile(r"\brna_enum_\w+")
 # Values that are listed where the module is described: ``**`UNIFORM_COLOR`**: Attributes…``.
 _LISTED_BY_MODULE = re.compile(r"One of the builtin \w+ names\.?")
 _LISTED_NAME = re.compile(r"^\*\*`([A-Z][A-Z0-9_]*)`\*\*", re.MULTILINE)
 # How ``inside/keywords.py`` marks what it finds.
 _NO_KEYWORDS, _BY_PLACE, _BY_NAME, _OPTIONAL = "no-keywords", "by-place:", "by-name:", "all-optional"
+_REQUIRES = "requires:"
 _METHOD_FLAGS = {"classmethod": ("classmethod",), "staticmethod": ("static",)}
 # RNA calls each of these a NodeTree; Blender accepts one kind of tree only, which decides the nodes below.
 _TREES = {
@@ -195,6 +199,8 @@ def _completed(parameters: Iterable[Parameter], known: Iterable[Parameter]) -> t
 def read_docstring(row: Mapping[str, Any]) -> Docstring:
     """What the docstring of a line of the extract says; it is kept."""
     docstring, signature = row.get("docstring", ""), row.get("signature", "")
+    if row.get("kind") == "class":
+        return constructed_by(parse_docstring(docstring, signature), last_name(row["path"]))
     if not row.get(_OF_MODULE) or not signature.startswith(_SELF):
         return parse_docstring(docstring, _BOUND.sub("(", signature, count=1))
     # A function of a module that panels call with themselves: it takes what is called so as any other argument.
@@ -203,7 +209,14 @@ def read_docstring(row: Mapping[str, Any]) -> Docstring:
 
 
 def _without_roles(text: str) -> str:
-    return _ROLE.sub(r"`\1`", text)
+    """A description of RNA's without the marks of reST that some have."""
+    return _DOUBLE.sub(r"`\1`", _ROLE.sub(r"`\1`", text)) if "`" in text else text
+
+
+def _requiring(parsed: Docstring, least: int) -> Docstring:
+    """A docstring whose first few parameters are required."""
+    parameters = (replace(p, required=place < least) for place, p in enumerate(parsed.parameters))
+    return replace(parsed, parameters=tuple(parameters))
 
 
 def _symbol(row: dict[str, Any]) -> Symbol:
@@ -216,15 +229,18 @@ def _symbol(row: dict[str, Any]) -> Symbol:
     path, kind = row["path"], row["kind"]
     fields["parameters"] = parameters = tuple(
         replace(parameter, description=_without_roles(parameter.description))
-        if ":class:" in parameter.description
+        if "`" in parameter.description
         else parameter
         for parameter in fields.get("parameters", ())
     )
     if parsed is not None:
         call = with_sets(parsed.signature, parameters)
         fields["description"] = parsed.description
-        fields["type"] = parsed.type or row.get("type", "")
+        fields["type"] = "" if kind == "class" else parsed.type or row.get("type", "")
         flags = row.get("flags", ())
+        if least := next((flag.removeprefix(_REQUIRES) for flag in flags if flag.startswith(_REQUIRES)), ""):
+            parsed = _requiring(parsed, int(least))
+            call = requiring(call, [parameter.name for parameter in parsed.parameters], int(least))
         call = by_place(call) if _NO_KEYWORDS in flags else call
         if most := next((flag.removeprefix(_BY_PLACE) for flag in flags if flag.startswith(_BY_PLACE)), ""):
             call = by_place_up_to(call, int(most))
@@ -272,7 +288,7 @@ def _described_members(rows: Iterable[dict[str, Any]]) -> Iterator[Symbol]:
     """Methods described only in the docstring of their class, as Freestyle's; the reference lists them."""
     for row in rows:
         if row["kind"] == "class" and row.get("docstring"):
-            for member in parse_docstring(row["docstring"], row.get("signature", "")).members:
+            for member in read_docstring(row).members:
                 told, call = member.docstring, member.docstring.signature
                 is_call = "(" in call
                 yield Symbol(
@@ -337,6 +353,7 @@ def read_extract(path: Path) -> Extract:
     _name_active_items(raw.symbols)
     name_classes(raw.symbols)
     unmark_unanimated(raw.symbols)
+    mark_same_values(raw.symbols)
     _substitute(raw.symbols.values())
     described = [*_described_members(raw.symbols.values())]
     symbols = {row_path: _symbol(row) for row_path, row in raw.symbols.items()}

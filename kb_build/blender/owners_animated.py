@@ -1,7 +1,8 @@
 """Which properties can be animated where they are: RNA's own flag does not ask what owns them.
 
 Keys and drivers are kept in the animation data of a data-block, which images, brushes, texts and screens do not have.
-Preferences and key maps are no data-blocks at all.
+Preferences and key maps are no data-blocks at all. An Action has none either: what it holds takes no key, and the
+curves of drivers, which are of the same classes, are no reason to say so.
 """
 
 from __future__ import annotations
@@ -12,10 +13,11 @@ from typing import TYPE_CHECKING, Any
 from kb_build.symbols.api_names import ID, TYPES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Container, Iterable, Iterator, Mapping
 
 _ANIMATABLE = "animatable"
 _KEPT_IN = "animation_data"
+_ACTION = "action"  # … of that: the Action with the curves
 # Of every struct: its own class, which belongs to no data-block.
 _OF_CLASSES = frozenset({"rna_type", "bl_rna"})
 _UNTOLD = "UnknownType"
@@ -62,8 +64,10 @@ def _is_class_of_rna(path: str, kind: str) -> bool:
     return kind == "class" and path.startswith(TYPES)
 
 
-def _held(classes: _Classes, cls: str) -> Iterator[str]:
-    """The classes of what a struct of a class holds itself: no other data-blocks."""
+def _held(classes: _Classes, cls: str, pointed_to: Container[str] = ()) -> Iterator[str]:
+    """The classes of what a struct of a class holds itself: no other data-blocks, and of those ``pointed_to`` only what
+    stands in a collection that adds and removes.
+    """
     for above in classes.ancestry(cls):
         for row in classes.properties[above]:
             target = row.get("target", "")
@@ -72,23 +76,54 @@ def _held(classes: _Classes, cls: str) -> Iterator[str]:
             if target == _UNTOLD:  # where RNA names no class, those that are called after the owner
                 yield from classes.of_name(above)
             elif not classes.is_data_block(TYPES + target):
-                yield TYPES + target
+                if row.get("collection") or TYPES + target not in pointed_to:
+                    yield TYPES + target
                 yield f"{TYPES}{row.get('collection', '')}"
+
+
+def _all_held(
+    classes: _Classes, owners: Iterable[str], *, without: Container[str] = (), pointed_to: Container[str] = ()
+) -> set[str]:
+    """Classes with all that they hold, and what that holds, but nothing of the classes ``without``."""
+    waiting = [*owners]
+    found: set[str] = set()
+    while waiting:
+        for cls in classes.below(waiting.pop()):
+            if cls not in found and cls not in without:
+                found.add(cls)
+                waiting += _held(classes, cls, pointed_to)
+    return found
+
+
+def _elements(classes: _Classes, owners: Iterable[str]) -> set[str]:
+    """The classes of what stands in the collections of some classes."""
+    rows = (row for cls in owners for row in classes.properties[cls])
+    return {TYPES + row.get("target", "") for row in rows if row["type"] == "collection"}
 
 
 def _with_animation(classes: _Classes) -> set[str]:
     """The classes of data-blocks with animation data, of all that these hold, and what those inherit from."""
-    waiting = [
-        cls
+    kept_in = [
+        row
         for cls, rows in list(classes.properties.items())
-        if any(row["path"] == f"{cls}.{_KEPT_IN}" for row in rows)
+        for row in rows
+        if row["path"] == f"{cls}.{_KEPT_IN}"
     ]
-    found: set[str] = set()
-    while waiting:
-        for cls in classes.below(waiting.pop()):
-            if cls not in found:
-                found.add(cls)
-                waiting += _held(classes, cls)
+    animation = {TYPES + row.get("target", "") for row in kept_in}
+    actions = [
+        TYPES + row.get("target", "")
+        for cls in animation
+        for row in classes.properties[cls]
+        if row["path"] == f"{cls}.{_ACTION}"
+    ]
+    of_actions = _all_held(classes, actions)
+    found = _all_held(
+        classes,
+        [row["owner"] for row in kept_in],
+        without=animation,
+        pointed_to=_elements(classes, of_actions),
+    )
+    found |= _all_held(classes, animation) - of_actions
     return {above for cls in found for above in classes.ancestry(cls)}
 
 

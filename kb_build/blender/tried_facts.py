@@ -14,22 +14,29 @@ from kb_build.symbols.records import (
     BARE_DATA,
     CALLS,
     EMPTY,
+    EMPTY_AT_START,
     ENDS_BEFORE,
     ENDS_WITHOUT,
     EVALUATED,
+    FILLED_AT_START,
     FILLED_BY,
     FILLED_ON,
     FREE_ON,
     FREED_BY,
     GIVEN,
+    GIVES_NONE,
     INVERTED,
+    KEEPS_ITEMS,
     LOCKED_ON,
     LOCKED_WITH,
     MUST_HAVE,
+    NONE_ON_SOME,
     NOT_KNOWN,
     REFUSED_ALL,
+    SETS_ALSO,
     STOPS,
     UNBOUNDED,
+    WINDOWLESS,
 )
 from kb_build.symbols.taken import AT_TIMES, NEVER
 
@@ -114,6 +121,8 @@ def _add_pointer(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
         flags += [f"{FILLED_ON}{label}" for label in seen.get("filled", ())]
         if seen.get("filler"):
             flags.append(FILLED_BY + seen["filler"])
+    elif seen.get("partly"):
+        flags.append(NONE_ON_SOME)
     row["flags"] = [*row.get("flags", ()), *flags]
 
 
@@ -218,6 +227,40 @@ def _add_empty(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
         row["flags"] = [*row.get("flags", ()), EMPTY]
 
 
+def _add_start_empty(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
+    """Adds that Blender starts with nothing in a collection."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), EMPTY_AT_START]
+
+
+def _add_start_filled(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
+    """Adds that a pointer of what Blender starts with leads to something."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), FILLED_AT_START]
+
+
+def _add_gives_none(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
+    """Adds that a function gave None for every index."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), GIVES_NONE]
+
+
+def _add_windowless(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds what Blender said of a call where it had no window."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), WINDOWLESS + seen["said"]]
+
+
+def _add_written_through(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds what else a set of items changes, and whether it takes none."""
+    if row is not None:
+        row["flags"] = [
+            *row.get("flags", ()),
+            *(SETS_ALSO + name for name in seen.get("names", ())),
+            *([KEEPS_ITEMS] if seen.get("keeps") else ()),
+        ]
+
+
 def _add_inverted(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
     """Adds that some panel shows a switch the other way round."""
     if row is not None:
@@ -259,10 +302,15 @@ ADDED = {
     "source_items": _add_source_items,
     "empty_collection": _add_empty,
     "evaluated": _add_evaluated,
+    "gives_none": _add_gives_none,
     "inverted": _add_inverted,
     "left_out": _add_left_out,
     "limits": _add_limits,
     "locked": _add_locked,
     "own_class": _add_own_class,
+    "start_empty": _add_start_empty,
+    "start_filled": _add_start_filled,
     "undo_step": _add_undo_step,
+    "windowless": _add_windowless,
+    "written_through": _add_written_through,
 }

@@ -6,10 +6,11 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import NARROWER
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.flags import empty_when_new
 from kb_build.symbols.lineages import lineage
-from kb_build.symbols.records import EMPTY
+from kb_build.symbols.records import EMPTY, EMPTY_AT_START, NONE_ON_SOME
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
 _WAY = re.compile(r"(?P<before>.+)\.(?P<name>\w+)(?P<key>\[[^\]]+\])?")
 _FIRST = (None, "[0]")  # of a collection whose elements have no names; who asks for a name has made it
+_EMPTY = frozenset({EMPTY, EMPTY_AT_START, NONE_ON_SOME})
 _FAR = 3  # dots of what leads through another pointer than those to what is always there: ``bpy.context.scene.world``
 
 
@@ -36,7 +38,8 @@ class EmptyWays:
                 self._bases[name] = base
                 self._below[base].append(name)
             elif symbol.kind == "property" and symbol.target:
-                self._leading[symbol.name, symbol.target].append(symbol)
+                target = NARROWER.get(symbol.path, symbol.target)
+                self._leading[symbol.name, target].append(symbol)
 
     def last_empty(self, cls: str) -> str:
         """The path of the last pointer on the way to a class, given by its name, that is None on a new thing, or of the
@@ -53,7 +56,7 @@ class EmptyWays:
         for step in steps:
             owner = step.owner.removeprefix(TYPES)
             if self._reached.get(owner) == before:
-                is_empty = key in _FIRST and (empty_when_new(step) or EMPTY in step.flags)
+                is_empty = key in _FIRST and (empty_when_new(step) or not _EMPTY.isdisjoint(step.flags))
                 return step.path if is_empty else self.last_empty(owner)
         if is_far and len(steps) == 1:
             below = self._descendants(steps[0].owner.removeprefix(TYPES))

@@ -35,6 +35,7 @@ from kb_build.symbols.records import (
     LOCKED_ON,
     LOCKED_WITH,
     NEVER_BY_IDENTIFIER,
+    NONE_ON_SOME,
     NOT_ENOUGH,
     NOT_KNOWN,
     REFUSED_ALL,
@@ -157,21 +158,23 @@ def area_text(types: Sequence[str]) -> str:
     return "an area of any type" if ANY in types else f"an area of type {' or '.join(types)}"
 
 
+def fatal_lines(symbol: Symbol) -> list[str]:
+    """When a call of a function or an operator crashes Blender, and what prevents it, a line each."""
+    unset = [f"while `{needed}` is None: set it before" for needed in symbol.flagged(ENDS_WITHOUT)]
+    return unset + [
+        "where there is no undo step yet, as in a Blender without a window: make one with "
+        f"`{call}`, and only then enter the mode"
+        for call in symbol.flagged(ENDS_BEFORE)
+    ]
+
+
 def refusal_lines(symbol: Symbol) -> list[str]:
     """Which calls of a function were refused although their arguments are those that it asks for, a line each.
 
-    Where both a value and what takes it decide, that is said with the value (see taken_where). What ends Blender comes
-    first.
+    Where both a value and what takes it decide, that is said with the value (see taken_where).
     """
-    fatal = [
-        f"while `{needed}` is None, which ends Blender: set it" for needed in symbol.flagged(ENDS_WITHOUT)
-    ]
-    fatal += [
-        f"without an undo step, as in a Blender without a window, which ends it: `{call}` before the mode is entered"
-        for call in symbol.flagged(ENDS_BEFORE)
-    ]
     own = [f"taken only by {_REGISTERED}"] if _is_of_own_nodes(symbol) else []
-    return [*fatal, *own] + [
+    return own + [
         _refusal_text(refusal)
         for refusal in symbol.refusals
         if refusal.is_explained and not (refusal.values and refusal.by)
@@ -283,6 +286,8 @@ def default_text(symbol: Symbol) -> str:
     """What new ones have, in which kinds and modes they differ, and RNA's default where it is another."""
     if empty := empty_when_new(symbol):
         return _empty_text(symbol, empty)
+    if NONE_ON_SOME in symbol.flags:
+        return f"`None` on some kinds of a new {symbol.owner.rpartition('.')[2]}"
     if EMPTY in symbol.flags:
         return f"empty (new {last_name(symbol.owner)})"
     usual = [new for new in symbol.new_values if not new.when]

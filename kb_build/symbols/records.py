@@ -76,6 +76,20 @@ SHOWN_WHEN = "shown-when:"
 NAMES_ITEMS = "names-items"
 # The flag of a collection that has no elements on what is newly made.
 EMPTY = "empty-when-new"
+# The flag of a pointer that is None on some new things of a kind and not on others.
+NONE_ON_SOME = "none-on-some"
+# The flags of a collection of ``bpy.data`` that is empty when Blender starts, and of a pointer that leads to something
+# on what it starts with.
+EMPTY_AT_START, FILLED_AT_START = "empty-at-start", "filled-at-start"
+# The flag of a function that gave None for every index.
+GIVES_NONE = "gives-none"
+# How a flag begins with what Blender said of a call where it had no window.
+WINDOWLESS = "windowless:"
+# How a flag begins that names the property of the same class which always has the same value.
+SAME_VALUE = "same-value:"
+# How flags begin that name another property of its class which assigning a set of items changes, and the flag of such a
+# set that keeps its items where it is given none.
+SETS_ALSO, KEEPS_ITEMS = "sets-also:", "keeps-items"
 # How flags begin of a property that RNA calls writable, and Blender does not always let be assigned: on which things it
 # is locked, or is not (``any``: on all that were tried), in which modes, and which setting frees it.
 LOCKED_ON = "locked-on:"

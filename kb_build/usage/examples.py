@@ -161,6 +161,8 @@ def _used(analysis: Analysis, api: Api) -> Iterator[tuple[str, _UseKind, int, Re
         kind = resolution.kind
         if kind in {"keyword", "value", "compared"} or (kind == "attribute" and node in called):
             continue
+        if isinstance(node, ast.Call) and _is_of_some(analysis.resolutions.get(node.func)):
+            continue
         for path in resolution.symbols:
             # A class that is a value among others does not show how it is used.
             is_value = kind == "attribute" and node not in owners and api.is_class(path)
@@ -172,6 +174,11 @@ def _used(analysis: Analysis, api: Api) -> Iterator[tuple[str, _UseKind, int, Re
             elif isinstance(made, Operator):
                 continue
     yield from _defined(analysis)
+
+
+def _is_of_some(callee: Resolution | None) -> bool:
+    """Whether only several classes below that of its owner have what is called: any of them may be meant."""
+    return callee is not None and len(callee.possible) > 1 and not callee.symbols
 
 
 def _defined(analysis: Analysis) -> Iterator[tuple[str, _UseKind, int, Resolution]]:

@@ -9,6 +9,7 @@ obj.keyframe_insert("location", index=3)  # reported: 0 to 2
 obj.keyframe_insert("hide_render", index=0)  # reported: one value, which has no index
 obj.keyframe_insert("name")  # reported: no animatable property
 image.keyframe_insert("alpha_mode")  # reported: images have no animation data
+curve.keyframe_insert("mute")  # reported: what an Action holds takes no key
 lamp.keyframe_insert("data.energy")  # reported: lamp.data.keyframe_insert("energy")
 obj.driver_add('modifiers["Array"].number')  # reported: no modifier has it
 obj.keyframe_insert("modifiers['Array'].count")  # reported: double quotes
@@ -84,7 +85,7 @@ def _of_text(script: Script, call: CallSite, node: ast.expr, index: ast.expr | N
     return (
         _elsewhere(script, call, followed, node)
         or _of_item(script, call, followed, node, index)
-        or _of_end(script, followed)
+        or _of_end(script, followed, _text(script, node))
     )
 
 
@@ -147,9 +148,13 @@ def _of_item(
     )  # fmt: skip
 
 
-def _of_end(script: Script, followed: Followed) -> _Fault | None:
-    """A path to what cannot be animated."""
-    if not followed.properties or any("animatable" in symbol.flags for symbol in followed.properties):
+def _of_end(script: Script, followed: Followed, path: str) -> _Fault | None:
+    """A path to what cannot be animated. By its own path a data-block takes keys on the curves of its drivers, which
+    these refuse themselves.
+    """
+    if path.startswith(f"{_KEPT_IN}.drivers[") or not followed.properties:
+        return None
+    if any("animatable" in symbol.flags for symbol in followed.properties):
         return None
     first = followed.properties[0]
     if first.kind == "function":

@@ -8,7 +8,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.flags import never_taken
-from kb_build.symbols.lines import SET, literal, refusal_lines, said_taken, taken_where
+from kb_build.symbols.lines import SET, fatal_lines, literal, refusal_lines, said_taken, taken_where
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.enum_items import item_lines
 from kb_serve.answer.property_facts import UNITS, range_text
@@ -44,6 +44,8 @@ def arguments(symbol: Symbol, asked: AskedOf) -> Iterator[AnswerBlock]:
     if symbol.returns:
         lines = "\n".join(map(_parameter_line, symbol.returns))
         yield AnswerBlock(f"**Returns**{_kept_in(symbol)}\n{lines}", "returns")
+    if lines := "\n".join(f"- {line}" for line in fatal_lines(symbol)):
+        yield AnswerBlock(f"**Crashes Blender, as was tried**\n{lines}", "crashes")
     if lines := "\n".join(f"- {line}" for line in refusal_lines(symbol)):
         yield AnswerBlock(f"**Refused, of all that was tried**\n{lines}", "refused calls")
     for parameter in symbol.parameters:

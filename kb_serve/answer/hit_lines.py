@@ -95,9 +95,6 @@ class HitLines:
         if entry.kind != "class":
             return entry.head if "(" in entry.line else ""
         members = self._reader.members(entry.path)
-        uses = [] if members else self._reader.uses(entry.path)
-        if uses and uses[0].code.startswith("@"):
-            return f"a decorator of functions: `{uses[0].code.splitlines()[0]}`"
         label = f"{entry.label}, " if entry.label not in {"", entry.name} else ""
         return f"{label}a class with {len(members)} members"
 

@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.lines import with_article
 from kb_build.symbols.paths import last_name
 
 if TYPE_CHECKING:
@@ -26,7 +27,8 @@ def told_makers(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
     elif symbol.kind in {"function", "property"} and _OF_CLASS.isdisjoint(symbol.flags):
         owner = reader.symbol(symbol.owner)
         if calls := _calls(owner, reader) if owner else "":
-            yield f"a `{last_name(symbol.owner)}` is made by {calls}"
+            name = last_name(symbol.owner)
+            yield f"{with_article(name).removesuffix(name)}`{name}` is made by {calls}"
 
 
 def _calls(cls: Symbol, reader: BaseReader) -> str:

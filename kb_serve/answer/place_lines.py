@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import NODE, TYPES
 from kb_build.symbols.flags import alike_nodes, empty_when_new, fillers, new_subscript
 from kb_build.symbols.lines import default_text, of_evaluated
-from kb_build.symbols.records import EVALUATED, NAMES_ITEMS, WITHOUT_ACTIVE, WITHOUT_AREA
+from kb_build.symbols.records import (
+    EMPTY_AT_START,
+    EVALUATED,
+    FILLED_AT_START,
+    NAMES_ITEMS,
+    WITHOUT_ACTIVE,
+    WITHOUT_AREA,
+)
 from kb_serve.answer.calls_before import calls_before
 from kb_serve.answer.makers_of_instances import told_makers
 from kb_serve.answer.pages import manual_page
@@ -45,10 +52,11 @@ def place_lines(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
         yield f'items by index, or by their `{key}`: `{symbol.name}["…"]`'
     if symbol.trees:
         yield "node of: " + ", ".join(symbol.trees)
-    elif symbol.kind == "class" and _is_node(symbol.path, reader):
-        alike = (reader.symbol(path) for path in alike_nodes(symbol.name))
-        taken = ", ".join(f"`{node.name}`" for node in alike if node and node.trees)
-        yield "no node tree takes it: `nodes.new` refuses it" + (f"; it takes {taken}" if taken else "")
+    elif (node := _owning_class(symbol, reader)) and _is_taken_nowhere(node, symbol, reader):
+        alike = (reader.symbol(path) for path in alike_nodes(node.name))
+        taken = ", ".join(f"`{other.name}`" for other in alike if other and other.trees)
+        it = "it" if node is symbol else f"a `{node.name}`"
+        yield f"no node tree takes {it}: `nodes.new` refuses it" + (f"; it takes {taken}" if taken else "")
     version, lacked = reader.arrival(symbol.path)
     if version:
         yield f"since Blender {version}" + (f" or a little before ({lacked} lacks it)" if lacked else "")
@@ -93,15 +101,45 @@ def _is_node(path: str, reader: BaseReader) -> bool:
     return path != NODE and reader.descends(path, NODE)
 
 
+def _is_taken_nowhere(node: Symbol, symbol: Symbol, reader: BaseReader) -> bool:
+    """Whether a symbol is a class of nodes that no tree takes, or only belongs to such a one: not to a base class."""
+    if node.kind != "class" or node.trees or not _is_node(node.path, reader):
+        return False
+    return node is symbol or not reader.subclasses(node.path)
+
+
 def _empty_before(cls: Symbol, reader: BaseReader) -> str:
-    """Where a pointer that leads to instances of a class is None on new things: that, and what fills it."""
-    pointer = reader.symbol(cls.lacks) if cls.lacks else None
-    if pointer is None:
-        return ""
+    """What on the way to instances of a class is None, or empty, where nobody has filled it, and what fills it; the
+    first first.
+    """
+    told: list[str] = []
+    at: Symbol | None = cls
+    while at is not None and at.lacks and (pointer := reader.symbol(at.lacks)):
+        if text := _empty_text(pointer, reader):
+            told.append(text)
+        owner = reader.symbol(pointer.owner)
+        at = owner if owner and owner is not at and _leads_on(owner, at) else None
+    return "".join(f"; {text}" for text in reversed(told))
+
+
+def _leads_on(owner: Symbol, cls: Symbol) -> bool:
+    """Whether the way to a class goes on from that to the owner of what it lacks."""
+    return (
+        bool(owner.reached)
+        and len(owner.reached) < len(cls.reached)
+        and cls.reached.startswith(owner.reached)
+    )
+
+
+def _empty_text(pointer: Symbol, reader: BaseReader) -> str:
+    """That a pointer is None, or a collection empty; nothing of one that the start-up file has filled."""
     if tree := _assigned(pointer, reader):
-        return f"; `{pointer.name}` is {default_text(pointer)}: assign `{tree}`"
-    is_told = fillers(pointer) or pointer.type == "collection"
-    return f"; `{pointer.name}` is {default_text(pointer)}" if is_told else ""
+        return f"`{pointer.name}` is {default_text(pointer)}: assign `{tree}`"
+    if EMPTY_AT_START in pointer.flags:
+        return f"`{pointer.name}` is empty in the start-up file"
+    empty = empty_when_new(pointer)
+    is_there = FILLED_AT_START in pointer.flags or (empty is not None and bool(empty.made))
+    return "" if is_there and not fillers(pointer) else f"`{pointer.name}` is {default_text(pointer)}"
 
 
 def _assigned(symbol: Symbol, reader: BaseReader) -> str:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.flags import is_locked
 from kb_build.symbols.lines import default_text, locked_text, shown_when, subscripts_text, type_text
-from kb_build.symbols.records import STOPS, UNBOUNDED
+from kb_build.symbols.records import KEEPS_ITEMS, SAME_VALUE, SETS_ALSO, STOPS, UNBOUNDED
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -52,6 +52,12 @@ def facts(symbol: Symbol) -> Iterator[str]:
         yield "cannot be set to `None`"
     if text := locked_text(symbol):
         yield text
+    if others := symbol.flagged(SETS_ALSO):
+        yield f"assigning it may change {' and '.join(f'`{other}`' for other in others)}, too"
+    if KEEPS_ITEMS in symbol.flags:
+        yield "given an empty set it keeps what it has"
+    for other in symbol.flagged(SAME_VALUE):
+        yield f"always the value of `{other}`: setting one sets both"
     if shown := shown_when(symbol):
         yield f"shown when {shown}"
 

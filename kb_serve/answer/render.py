@@ -13,6 +13,7 @@ from kb_serve.answer.arguments import argument_lines, arguments, operator_call
 from kb_serve.answer.asked_values import ASKED_NOTHING
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.enum_items import item_lines
+from kb_serve.answer.outcomes import outcomes
 from kb_serve.answer.own_classes import asked_of_classes, definition
 from kb_serve.answer.pages import passage_block
 from kb_serve.answer.panel_lines import panel_lines
@@ -20,7 +21,7 @@ from kb_serve.answer.place_lines import place_lines, reached_as
 from kb_serve.answer.property_facts import facts
 from kb_serve.answer.shown_uses import use_text
 from kb_serve.answer.switches import switch_lines
-from kb_serve.answer.swizzles import without_swizzles
+from kb_serve.answer.swizzles import swizzle_text, without_swizzles
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -155,9 +156,10 @@ class MarkdownRenderer:
         label = f"**{symbol.label}** — " if symbol.label else ""
         if text := (label + symbol.description.strip()).removesuffix(" — "):
             lines.append(text)
-        if line := " · ".join(facts(symbol)):
+        if line := " · ".join(filter(None, (*facts(symbol), swizzle_text(symbol, self.reader)))):
             lines.append(line)
         lines.extend(asked_of_classes(symbol))
+        lines.extend(outcomes(symbol))
         if line := poll_line(symbol):
             lines.append(line)
         lines.extend(self._calls_in_areas(symbol))

@@ -1,4 +1,6 @@
-"""Says on one line what a class has as many members: those whose names are the letters of others, ``zyx``."""
+"""Says on one line what a class has as many members: those whose names are the letters of others, ``zyx``; and of one
+of these what its name tells.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +9,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kb_serve.reader import SymbolEntry
+    from kb_build.symbols.records import Symbol
+    from kb_serve.reader import BaseReader, SymbolEntry
 
 _MANY = 8
+_FEWEST = 2  # parts of a vector
 
 
 def without_swizzles(members: Sequence[SymbolEntry]) -> tuple[list[SymbolEntry], str]:
@@ -28,3 +32,16 @@ def without_swizzles(members: Sequence[SymbolEntry]) -> tuple[list[SymbolEntry],
         f"{longest} of them, as a new {swizzles[0].type}"
     )
     return kept, line
+
+
+def swizzle_text(symbol: Symbol, reader: BaseReader) -> str:
+    """What a member that puts parts of a vector together asks of it, by its name; empty for other members."""
+    if symbol.kind != "property" or len(symbol.name) < 2 or symbol.type != symbol.owner.rpartition(".")[2]:
+        return ""
+    letters = [name for name in reader.members(symbol.owner) if len(name) == 1]
+    if not set(symbol.name) <= {*letters}:
+        return ""
+    least = max(_FEWEST, 1 + max(map(letters.index, symbol.name)))
+    twice = next((letter for letter in symbol.name if symbol.name.count(letter) > 1), "")
+    can_be_set = f"read-only, `{twice}` is in it more than once" if twice else "can be assigned"
+    return f"of a vector with {least} parts{' or more' if least < len(letters) else ''} · {can_be_set}"

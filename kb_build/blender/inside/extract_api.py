@@ -18,6 +18,7 @@ import bpy
 from . import (
     addon_names,
     context,
+    given_nothing,
     left_out,
     modules,
     nodes,
@@ -29,9 +30,10 @@ from . import (
     rna,
     source_items,
     undo_steps,
+    windowless,
 )
 from .apart import Beside, can_work_apart
-from .instances import evaluated, limits, new_things, own_names, pointer_fillers, startup
+from .instances import context_modes, evaluated, limits, new_things, own_names, pointer_fillers, startup
 from .instances.neighbours import Neighbours
 from .instances.observer import Observer
 from .wire import Writer
@@ -101,6 +103,7 @@ def start_beside(_write, found):
             left_out.find_all(write)
             undo_steps.find_all(write)
             reached_modes.find_all(write)
+            windowless.find_all(write)
 
         found["refusals"] = Beside("refusals", tried)
         found["addons"] = Beside("addons", addon_names.write_all)
@@ -117,8 +120,10 @@ def write_begun(write, found):
 STEPS = (
     ("start beside", start_beside),
     ("classes", write_rna),
+    ("given nothing", lambda write, found: given_nothing.find_all(write, found["structs"])),
     ("operators", lambda write, _found: operators.write_all(write)),
     ("names", lambda _write, found: own_names.look_at_start(found["observer"])),
+    ("present", lambda write, found: startup.write_present(write, found["observer"])),
     ("start", lambda _write, found: startup.look_at_start(found["observer"])),
     (
         "nodes",
@@ -148,6 +153,7 @@ STEPS = (
             write, found["observer"], found["skipped"], found.get("needs")
         ),
     ),
+    ("modes of the context", lambda _write, found: context_modes.find_all(found["observer"])),
     ("neighbours", lambda write, found: found["neighbours"].write(write)),
     ("instances", lambda write, found: found["observer"].write(write)),
     # Of enumerations of which the instances have told their items.

@@ -2,13 +2,15 @@
 """Finds how functions written in C take their arguments, where their documentation does not say it.
 
 Some take none by its name, though it names them: they refuse a call with any keyword before they look at what is given.
-Others take only the first few by their places, and likewise refuse more.
+Others take only the first few by their places, and likewise refuse more. Of some, the call is documented without its
+arguments.
 """
 
 import functools
 import inspect
 import re
 import types
+from contextlib import suppress
 
 import bmesh
 import bpy
@@ -19,6 +21,7 @@ NO_KEYWORDS = "no-keywords"
 BY_PLACE = "by-place:"  # and how many arguments are taken so
 BY_NAME = "by-name:"  # and one that is taken so, though its documentation says that it is not
 OPTIONAL = "all-optional"
+REQUIRES = "requires:"  # and how many of the arguments that are documented below a call without any
 REFUSED = "takes no keyword arguments"
 TAKES = re.compile(r"takes at most (\d+) arguments?")
 MISSING = re.compile(r"missing required argument '(\w+)' \(pos 1\)")
@@ -29,8 +32,23 @@ NONE_BY_PLACE, ONE_BY_PLACE = "all args must be keywords", "expected one positio
 NO_TEXT = "argument 1 must be str"
 LOOKUPS = ("file_path_map", "user_map")  # of bpy.data, which change nothing
 NO_NAME = {"no argument's name": None}
+EXACTLY = re.compile(r"takes exactly (\w+) arguments?")
+MISSES = re.compile(r"missing required argument '\w+' \(pos (\d+)\)")
+NONE_IN_CALL = re.compile(r"\.\. \w+:: *\w+\(\)[^\n]*\n.*^\s*:(?:arg|param) ", re.DOTALL | re.MULTILINE)
 MANY = (object(),) * 30
 CALL = re.compile(r"\w\(([^)\n]+)\)")
+
+
+def sounds():
+    """A sound, a sequence and an entry of it; as many of them as this Blender makes."""
+    made = []
+    with suppress(Exception):
+        import aud
+
+        made.append(aud.Sound.sine(440))
+        made.append(aud.Sequence())
+        made.append(made[1].add(made[0].limit(0, 1), 0.0, 1.0, 0.0))
+    return made
 
 
 @functools.cache
@@ -51,6 +69,7 @@ def instances():
         mathutils.Color(),
     ]
     made += [bvhtree.BVHTree.FromPolygons([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]), kdtree.KDTree(1)]
+    made += sounds()
     found = {type(one): one for one in made}
     found[bpy.types.bpy_struct] = bpy.context.preferences
     found[bpy.types.bpy_prop_collection] = found[bpy.types.bpy_prop] = bpy.data.objects
@@ -125,6 +144,22 @@ def of_places(function):
     return [f"{BY_PLACE}{by_place[1] or 0}"] if by_place else []
 
 
+def of_untold(function):
+    """The flag of a function whose documentation has arguments, and a call without any: how many of them it requires.
+
+    It is only asked with too many or too few, so that nothing happens.
+    """
+    if not NONE_IN_CALL.match(inspect.getdoc(function) or ""):
+        return []
+    said = refusal(function, *MANY)
+    if exactly := EXACTLY.search(said):
+        return [REQUIRES + exactly[1].replace("one", "1")]
+    least = 0
+    while TAKES.search(said) and (misses := MISSES.search(refusal(function, *MANY[: max(least, 1)]))):
+        least = int(misses[1])
+    return [f"{REQUIRES}{least}"] if least else []
+
+
 def flags_of(value):
     """The flags of a function, or of a class's method, that tell how it takes arguments; none for what is no other
     than its documentation says, and for what cannot be asked.
@@ -135,6 +170,7 @@ def flags_of(value):
     if function.__module__ == PROPERTIES:
         return of_property(function)
     said = refusal(function, **NO_NAME)
+    untold = of_untold(function)
     if REFUSED in said:
-        return [NO_KEYWORDS]
-    return of_names(function, said) or of_lookups(function) or of_places(function)
+        return [NO_KEYWORDS, *untold]
+    return untold or of_names(function, said) or of_lookups(function) or of_places(function)

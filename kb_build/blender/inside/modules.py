@@ -135,8 +135,8 @@ def annotated(hint):
     }
 
 
-def write_class(write, path, cls):
-    """A class outside RNA with its own members."""
+def write_class(write, path, cls, told=""):
+    """A class outside RNA with its own members; ``told`` is what is said of it where it is, if it says nothing."""
     owner = path.rpartition(".")[0]
     WRITTEN[cls] = path
     write(
@@ -144,7 +144,7 @@ def write_class(write, path, cls):
         path=path,
         kind="class",
         owner=owner,
-        docstring=inspect.getdoc(cls) if "__doc__" in vars(cls) and cls.__doc__ else "",
+        docstring=inspect.getdoc(cls) if "__doc__" in vars(cls) and cls.__doc__ else told,
         signature=signature(cls) if cls.__module__ != "builtins" and "__init__" in vars(cls) else "",
         base=base_path(cls),
         group="data",
@@ -250,7 +250,9 @@ class Walk:
             if home == "builtins" and value.__name__ != attribute:
                 return
             self.seen.add(value)
-            write_class(self.write, path, value)
+            described = getattr(type(module), attribute, None)
+            told = inspect.getdoc(described) if isinstance(described, ATTRIBUTE_TYPES) else ""
+            write_class(self.write, path, value, told or "")
         elif isinstance(value, types.FunctionType):
             if home == name or name.startswith(home + ".") or home.startswith("_bpy"):
                 self.function(path, name, value)

@@ -240,7 +240,8 @@ def result_of(function, prop):
 def kind_of(function):
     """The flags that tell what calls a function, and on what."""
     if not function.is_registered:
-        return [] if function.use_self or getattr(function, "use_self_type", False) else ["static"]
+        is_of_class = getattr(function, "use_self_type", False)
+        return [] if function.use_self else ["classmethod" if is_of_class else "static"]
     defined = DEFINED if function.is_registered_optional else DEFINED_ALWAYS
     return [defined] if function.use_self else [defined, "classmethod"]
 

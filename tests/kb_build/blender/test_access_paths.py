@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
+from told_by_blender import told_by_blender
 
 from kb_build.blender.access_paths import reached_expressions
 from kb_build.flow.symbols import BaseSymbols
@@ -252,3 +253,36 @@ def test_a_socket_is_reached_on_a_node_that_has_such_a_one(extract: Extract, rea
         assert name not in of_shaders
         assert reached[name].startswith(nodes), name
     assert "active_material.node_tree" in reached["NodeSocketShader"]
+
+
+def test_a_socket_that_no_node_has_is_reached_nowhere(extract: Extract, reached: dict[str, str]) -> None:
+    owned = {
+        row.target if row.target.startswith("NodeSocket") else f"NodeSocket{row.type.title()}"
+        for row in extract.symbols
+        if row.kind == "socket"
+    }
+    bases = {row.base for row in extract.symbols}
+    leaves = {
+        row.path.removeprefix(TYPES)
+        for row in extract.symbols
+        if row.path.startswith(f"{TYPES}NodeSocket") and row.kind == "class" and row.path not in bases
+    }
+    assert "NodeSocketTexture" in leaves - owned
+    assert [name for name in leaves - owned if name in reached] == []
+
+
+def test_sockets_of_the_factory_material_are_there(reached: dict[str, str], tmp_path: Path) -> None:
+    nodes = "bpy.context.object.active_material.node_tree.nodes"
+    present = {
+        name: way
+        for name, way in reached.items()
+        if name.startswith("NodeSocket")
+        and way.startswith((f'{nodes}["Principled BSDF"].', f'{nodes}["Material Output"].'))
+    }
+    assert {"NodeSocketShader", "NodeSocketFloatWavelength", "NodeSocketColor"} <= present.keys()
+    script = (
+        "import bpy, json, sys\nways = json.load(open(sys.argv[-1]))\n"
+        "found = {name: type(eval(way)).__name__ for name, way in ways.items()}\n"
+        "json.dump(found, open(sys.argv[-1], 'w'))\n"
+    )
+    assert told_by_blender(script, tmp_path, present) == {name: name for name in present}

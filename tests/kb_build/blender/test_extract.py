@@ -202,6 +202,49 @@ def test_methods_described_only_in_a_docstring_are_symbols(tmp_path: Path) -> No
     assert found["m.A.shade"].description == "Its own words."
 
 
+def test_a_method_called_like_its_class_is_the_constructor(tmp_path: Path) -> None:
+    docstring = "A stroke.\n\n.. method:: Stroke()\n            Stroke(brother)\n\n   Makes one.\n"
+    extract = read(tmp_path, symbol("m.Stroke", docstring=docstring))
+    found = {row.path: row for row in extract.symbols}
+    assert "m.Stroke.Stroke" not in found
+    assert found["m.Stroke"].signature == "Stroke(brother)"
+    assert found["m.Stroke.__init__"].signature == "__init__(brother)"
+
+
+def test_a_call_without_its_arguments_gets_those_that_are_described(tmp_path: Path) -> None:
+    text = (
+        ".. method:: add()\n\n   Adds.\n\n   :arg sound: What.\n   :type sound: Sound\n   :arg end: When.\n"
+        "   :type ends: float\n"
+    )
+    extract = read(
+        tmp_path,
+        symbol("m.A.add", "function", docstring=text, flags=["no-keywords", "requires:1"]),
+        symbol("m.A.unknown", "function", docstring=text),
+    )
+    added, unknown = extract.symbols
+    assert added.signature == "add(sound, end=..., /)"
+    assert [(p.name, p.type, p.required) for p in added.parameters] == [
+        ("sound", "Sound", True),
+        ("end", "float", False),
+    ]
+    assert unknown.signature == "unknown()"
+
+
+@pytest.mark.parametrize(
+    ("path", "signature"),
+    [
+        ("aud.Sequence.remove", "remove(entry, /)"),
+        ("aud.Sequence.add", "add(sound, begin, end=..., skip=...)"),
+        ("aud.Sound.binaural", "binaural(hrtfs, source, threadPool, /)"),
+        ("aud.Sound.list", "list(random, /)"),
+        ("aud.SequenceEntry.setAnimationData", "setAnimationData(type, frame, data, animated, /)"),
+    ],
+)
+def test_calls_of_sounds_have_what_they_require(extract: Extract, path: str, signature: str) -> None:
+    found = next(row for row in extract.symbols if row.path == path)
+    assert found.signature == signature
+
+
 # The manual's table
 
 

@@ -48,6 +48,8 @@ key = keymap.keymap_items.new("object.delete", "X", "PRESS")
 action = bpy.data.actions.new("act")
 channels = action.layers.new("l").strips.new(type="KEYFRAME").channelbag(action.slots.new("OBJECT", "s"), ensure=True)
 moved = channels.fcurves.new("location")
+blended = obj.animation_data_create().nla_tracks.new().strips.new("s", 1, action)
+blended.use_animated_influence = True
 """
 ANIMATED = (
     *("obj", "scene", "scene.render", "scene.eevee", "scene.view_settings", "scene.render.image_settings", "rig"),
@@ -70,7 +72,13 @@ NEVER_ANIMATED = (
     "preferences.inputs",
     *("preferences.themes[0].user_interface", "bpy.data.palettes.new('p')", "bpy.context.window_manager.windows[0]"),
 )  # fmt: skip
-SHARED = {"ID", "FCurve", "Keyframe", "ActionGroup"}
+OF_ACTIONS = (
+    *("moved", "moved.keyframe_points.insert(1, 1)", "channels.groups.new('g')", "action.slots[0]"),
+    *("obj.driver_add('location', 1)", "obj.driver_add('location', 2).driver"),
+    *(f"moved.modifiers.new('{kind}')" for kind in ("GENERATOR", "NOISE", "LIMITS", "STEPPED", "ENVELOPE")),
+)
+ANIMATION_DATA = ("obj.animation_data", "blended")
+SHARED = {"ID"}
 # Of what an expression gives, each property that RNA calls animatable: its path where it is declared, and the error.
 ASKED = """
 import json, sys
@@ -122,16 +130,30 @@ def test_what_no_data_block_with_animation_data_holds_is_not(
     assert [path for path, error in answers if not error] == []
     assert len(refused) > 400
     assert len(_classes(refused)) > 20
-    # Other data-blocks have what is declared for all, and the curves of drivers are of the same classes.
+    # Other data-blocks have what is declared for all.
     shared = {path for path in refused if path.split(".")[2] in SHARED}
     assert _classes(shared) == {f"bpy.types.{name}" for name in SHARED}
     assert [path for path in refused - shared if animatable[path]] == []
 
 
-def test_curves_of_drivers_take_keys(animatable: Mapping[str, bool], tmp_path: Path) -> None:
-    lines = "obj.driver_add('location', 0)\nobj.keyframe_insert('animation_data.drivers[0].mute')\n"
-    told_by_blender(MAKING + lines, tmp_path, [], seconds=240)
-    assert animatable["bpy.types.FCurve.mute"]
+def test_what_an_action_holds_takes_no_key(animatable: Mapping[str, bool], tmp_path: Path) -> None:
+    answers = _asked(tmp_path, OF_ACTIONS)
+    refused = {path for path, error in answers if error}
+    assert [path for path, error in answers if not error] == []
+    assert len(_classes(refused)) > 8
+    assert [path for path in refused if animatable[path]] == []
+
+
+def test_animation_data_and_strips_that_blend_actions_do(
+    animatable: Mapping[str, bool], tmp_path: Path
+) -> None:
+    keyed = {path for path, error in _asked(tmp_path, ANIMATION_DATA) if not error}
+    assert {"bpy.types.AnimData.action_influence", "bpy.types.NlaStrip.influence"} <= keyed
+    assert [path for path in keyed if not animatable[path]] == []
+
+
+def test_what_others_have_like_an_action_stays(animatable: Mapping[str, bool]) -> None:
+    assert animatable["bpy.types.TimelineMarker.frame"]
 
 
 @pytest.mark.parametrize(

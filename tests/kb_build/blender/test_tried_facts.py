@@ -3,13 +3,26 @@
 from __future__ import annotations
 
 import itertools
+import re
 from typing import TYPE_CHECKING
 
 import pytest
 from statements_in_blender import run_statements
 
+from kb_build.symbols.flags import usual_default
 from kb_build.symbols.lines import default_text, shown_when, type_text
-from kb_build.symbols.records import BARE_DATA, INVERTED
+from kb_build.symbols.records import (
+    BARE_DATA,
+    EMPTY_AT_START,
+    FILLED_AT_START,
+    GIVES_NONE,
+    INVERTED,
+    KEEPS_ITEMS,
+    NONE_ON_SOME,
+    SAME_VALUE,
+    SETS_ALSO,
+    WINDOWLESS,
+)
 from kb_build.symbols.taken import AT_TIMES
 
 if TYPE_CHECKING:
@@ -265,3 +278,105 @@ def test_an_array_of_any_length_has_no_length(symbols: Mapping[str, Symbol]) -> 
 
 def test_a_call_ends_with_its_own_bracket(symbols: Mapping[str, Symbol]) -> None:
     assert symbols["bpy.props.CollectionProperty"].signature.endswith("tags=set())")
+
+
+def test_an_item_of_a_mode_of_the_context_is_said_to_be_taken_in_it(
+    symbols: Mapping[str, Symbol], tmp_path: Path
+) -> None:
+    items = {
+        item.identifier: item.where for item in symbols["bpy.types.BrushTextureSlot.map_mode"].enum_items
+    }
+    assert items["AREA_PLANE"] == "only with bpy.context.mode='SCULPT'"
+    assert items["TILED"] == ""
+    assign = "brush.texture_slot.map_mode = 'AREA_PLANE'"
+    lines = ["import bpy", "brush = bpy.data.brushes.new('b')", assign]
+    lines += ["bpy.ops.object.mode_set(mode='SCULPT')", assign]
+    assert [bool(error) for error, _, _ in run_statements(tmp_path, lines)] == [
+        False,
+        False,
+        True,
+        False,
+        False,
+    ]
+
+
+def test_two_names_of_one_value_are_told_as_such(symbols: Mapping[str, Symbol]) -> None:
+    for name, other in (("map_mode", "mask_map_mode"), ("mask_map_mode", "map_mode")):
+        slot = symbols[f"bpy.types.BrushTextureSlot.{name}"]
+        assert slot.flagged(SAME_VALUE) == (other,)
+        assert default_text(slot) == "`'VIEW_PLANE'`"
+    pairs = [path for path, symbol in symbols.items() if symbol.flagged(SAME_VALUE)]
+    assert 4 <= len(pairs) < 20
+
+
+def test_what_gave_none_for_every_index_says_so(symbols: Mapping[str, Symbol], tmp_path: Path) -> None:
+    asked = (
+        "GeometryNodeTrimCurve.output_template",
+        "TextureNodeDistance.input_template",
+        "ShaderNodeMath.input_template",
+    )
+    lines = ["import bpy", *(f"assert bpy.types.{name}(0) is None" for name in asked)]
+    gave = [not error for error, _, _ in run_statements(tmp_path, lines)][1:]
+    assert gave == [True, False, True]
+    assert [GIVES_NONE in symbols[NODES + name].flags for name in asked] == gave
+    assert all("classmethod" in symbols[NODES + name].flags for name in asked)
+
+
+def test_what_wants_a_window_says_so(symbols: Mapping[str, Symbol], tmp_path: Path) -> None:
+    calls = {
+        "gpu.matrix.push": "()", "gpu.state.blend_set": "('ALPHA')", "gpu.types.GPUOffScreen": "(4, 4)",
+        "gpu.capabilities.max_texture_size_get": "()", "gpu.types.GPUShaderCreateInfo": "()",
+        "gpu.types.GPUStageInterfaceInfo": "('name')",
+    }  # fmt: skip
+    lines = ["import gpu", *(f"{path}{given}" for path, given in calls.items())]
+    errors = [error for error, _, _ in run_statements(tmp_path, lines)][1:]
+    told = [f"SystemError: {said}" for path in calls for said in symbols[path].flagged(WINDOWLESS) or [""]]
+    assert told == [error or "SystemError: " for error in errors]
+    assert [bool(error) for error in errors] == [True] * 4 + [False] * 2
+
+
+def test_what_blender_starts_without_and_with_is_told(symbols: Mapping[str, Symbol]) -> None:
+    of_data = "bpy.types.BlendData."
+    assert EMPTY_AT_START in symbols[f"{of_data}brushes"].flags
+    assert EMPTY_AT_START not in symbols[f"{of_data}materials"].flags
+    assert FILLED_AT_START in symbols["bpy.types.Object.active_material"].flags
+    assert FILLED_AT_START not in symbols["bpy.types.Scene.active_clip"].flags
+    settings = symbols["bpy.types.Brush.gpencil_settings"]
+    assert NONE_ON_SOME in settings.flags
+    assert default_text(settings) == "`None` on some kinds of a new Brush"
+
+
+def test_sets_that_change_others_are_told_with_these(symbols: Mapping[str, Symbol], tmp_path: Path) -> None:
+    base, individual = (
+        symbols[f"bpy.types.ToolSettings.snap_elements_{end}"] for end in ("base", "individual")
+    )
+    assert "snap_elements_individual" in base.flagged(SETS_ALSO)
+    assert "snap_elements_base" in individual.flagged(SETS_ALSO)
+    assert {KEEPS_ITEMS} <= {*base.flags} & {*individual.flags}
+    assert not symbols["bpy.types.DataTransferModifier.data_types_verts"].flags.count(KEEPS_ITEMS)
+    lines = [
+        "import bpy", "tool = bpy.context.scene.tool_settings", "tool.snap_elements_base = {'VERTEX'}",
+        "tool.snap_elements_individual = {'FACE_NEAREST'}", "assert tool.snap_elements_base == set()",
+        "tool.snap_elements_individual = set()", "assert tool.snap_elements_individual == {'FACE_NEAREST'}",
+    ]  # fmt: skip
+    assert not any(error for error, _, _ in run_statements(tmp_path, lines))
+
+
+def test_what_new_objects_of_tracking_have_is_compared(symbols: Mapping[str, Symbol]) -> None:
+    keyframes = [symbols[f"bpy.types.MovieTrackingObject.keyframe_{end}"] for end in "ab"]
+    assert [usual_default(keyframe) for keyframe in keyframes] == [1, 30]
+
+
+def test_descriptions_have_no_marks_of_another_markup(symbols: Mapping[str, Symbol]) -> None:
+    texts = [symbol.description for symbol in symbols.values() if symbol.path.startswith("bpy.types.")]
+    functions = [symbol for symbol in symbols.values() if symbol.kind == "function"]
+    texts += [parameter.description for symbol in functions for parameter in symbol.parameters]
+    assert [
+        text for text in texts if re.search(r"(?<!`)``(?!`)", text) or re.search(r"[^.]\.\.$", text)
+    ] == []
+
+
+def test_a_decorator_has_the_words_of_where_it_stands(symbols: Mapping[str, Symbol]) -> None:
+    persistent = symbols["bpy.app.handlers.persistent"]
+    assert "not to be removed when loading new files" in persistent.description
+    assert persistent.type == ""

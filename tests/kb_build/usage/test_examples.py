@@ -246,3 +246,18 @@ def test_a_decorator_is_shown_above_a_function(base: Path) -> None:
         found = uses_in(script, "a.py", Api(symbols), (5, 1, 0))
     expected = "@persistent\ndef after_loading(path): ..."
     assert shown(found, "bpy.app.handlers.persistent") == expected
+
+
+def test_a_call_that_only_some_classes_below_have_shows_none_of_them(base: Path) -> None:
+    code = "import bpy\ndata = bpy.context.object.data\ndata.update()\nmesh = bpy.data.meshes[0]\nmesh.update()\n"
+    with closing(BaseSymbols(base)) as symbols:
+        found = uses_in(code, "a/script.py", Api(symbols), (5, 1, 0))
+    assert "bpy.types.NodeTree.update" not in found
+    assert found["bpy.types.Mesh.update"].count == 1
+
+
+def test_a_call_that_one_class_below_has_is_a_use_of_it(base: Path) -> None:
+    code = "import bpy\ndata = bpy.context.object.data\ndata.view_frame(scene=bpy.context.scene)\n"
+    with closing(BaseSymbols(base)) as symbols:
+        found = uses_in(code, "a/script.py", Api(symbols), (5, 1, 0))
+    assert found["bpy.types.Camera.view_frame"].count == 1

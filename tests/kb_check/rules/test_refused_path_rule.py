@@ -203,6 +203,9 @@ bpy.context.preferences.view.keyframe_insert("ui_scale")
 scene.keyframe_insert("display.shading.light")
 scene.keyframe_insert("cycles.samples")
 ob.keyframe_insert("show_axis")
+ob.keyframe_insert("animation_data.drivers[0].mute")
+ob.animation_data.drivers[0].keyframe_insert("mute")
+ob.animation_data.action.layers[0].strips[0].channelbags[0].fcurves[0].keyframe_insert("extrapolation")
 """
 
 

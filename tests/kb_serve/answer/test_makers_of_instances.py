@@ -57,6 +57,7 @@ def test_a_method_is_told_with_what_makes_its_instance(reader: BaseReader) -> No
     told = _told(reader, "bmesh.types.BMesh.to_mesh")
     assert told.startswith("a `BMesh` is made by ")
     assert "`bmesh.new()`" in told
+    assert _told(reader, "imbuf.types.ImBuf.copy").startswith("an `ImBuf` is made by ")
 
 
 @pytest.mark.parametrize(

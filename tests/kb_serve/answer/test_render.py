@@ -424,7 +424,7 @@ def test_a_setting_without_a_value_says_so(kb: KnowledgeBase) -> None:
 
 def test_a_decorator_is_said_to_be_one(kb: KnowledgeBase) -> None:
     assert (
-        "`bpy.app.handlers.persistent` a decorator of functions: `@persistent`"
+        "`bpy.app.handlers.persistent` Function decorator for callback functions not to be removed"
         in kb.query("app handlers load_post keeps after new file").text
     )
 
@@ -435,3 +435,58 @@ def test_an_operator_that_makes_data_without_a_class_says_so(renderer: MarkdownR
     assert f"{told} Use `bpy.ops.object.old_add`." in shown(renderer, operator)
     assert told in shown(renderer, Symbol("bpy.ops.object.new_add", "operator", flags=(BARE_DATA,)))
     assert told not in shown(renderer, Symbol("bpy.ops.object.new_add", "operator"))
+
+
+def test_what_a_call_gave_or_wanted_is_said_of_it(kb: KnowledgeBase) -> None:
+    text = kb.query("bpy.types.GeometryNodeTrimCurve.output_template").text
+    assert "Gave `None` for every index that was tried: what a node has is in its `outputs`." in text
+    assert "Gave `None`" not in kb.query("bpy.types.TextureNodeDistance.input_template").text
+    assert "there it raises `SystemError`, “GPU functions" in kb.query("gpu.types.GPUOffScreen").text
+    assert "SystemError" not in kb.query("gpu.types.GPUShaderCreateInfo").text
+
+
+def test_what_ends_blender_is_not_called_refused(kb: KnowledgeBase) -> None:
+    text = kb.query("bpy.ops.sculpt.mask_init").text
+    assert "**Crashes Blender, as was tried**\n- where there is no undo step yet" in text
+    assert "Refused" not in text
+
+
+def test_a_member_of_a_node_that_no_tree_takes_says_so(kb: KnowledgeBase) -> None:
+    text = kb.query("bpy.types.CompositorNodeGamma.input_template").text
+    assert (
+        "no node tree takes a `CompositorNodeGamma`: `nodes.new` refuses it; it takes `ShaderNodeGamma`"
+        in text
+    )
+    assert "no node tree" not in kb.query("bpy.types.ShaderNode.poll").text
+
+
+@pytest.mark.parametrize(
+    ("path", "told"),
+    [
+        ("Brush.size", "`brushes` is empty in the start-up file"),
+        (
+            "BrushGpencilSettings.angle",
+            "`brushes` is empty in the start-up file; `gpencil_settings` is `None` on some kinds of a new Brush",
+        ),
+        ("BoidRule.name", "`boids` is `None` on a new ParticleSettings; made by"),
+        ("BoidState.volume", "`boids` is `None` on a new ParticleSettings; made by"),
+        (
+            "AnnotationLayer.color",
+            "`annotation` is `None` on a new Scene; `layers` is empty (new Annotation)",
+        ),
+        ("MovieClip.display_aspect", "`active_clip` is `None` on a new Scene"),
+    ],
+)
+def test_every_empty_step_of_a_way_is_told(kb: KnowledgeBase, path: str, told: str) -> None:
+    (line,) = [
+        line for line in kb.query(f"bpy.types.{path}").text.splitlines() if line.startswith("reached as")
+    ]
+    assert f"; {told}" in line
+
+
+@pytest.mark.parametrize("path", ["ShaderNodeMath", "World.color", "Mesh.vertices"])
+def test_a_step_that_the_start_up_file_has_filled_is_not_called_empty(kb: KnowledgeBase, path: str) -> None:
+    (line,) = [
+        line for line in kb.query(f"bpy.types.{path}").text.splitlines() if line.startswith("reached as")
+    ]
+    assert ";" not in line

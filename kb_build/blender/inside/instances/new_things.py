@@ -341,6 +341,8 @@ def tracking():
     clip = movie_clip()
     if clip is not None:
         yield called(clip), clip
+        tracked = clip.tracking.objects.new("new")
+        yield called(tracked), tracked
         track = clip.tracking.objects[0].tracks.new(frame=1)
         yield called(track), track
         yield called(track.markers[0]), track.markers[0]
@@ -388,6 +390,8 @@ def mesh_parts():
     obj = mesh_object()
     mesh = obj.data
     yield "uv layer", mesh.uv_layers.new(name="new")
+    if hasattr(mesh, "vertex_colors"):
+        yield "vertex colors", mesh.vertex_colors.new(name="new")
     for kind in argument_choices(mesh.attributes, "type"):
         attribute = mesh.attributes.new(f"new {kind}", kind, "POINT")
         yield f"{kind.lower()} attribute", attribute

@@ -16,6 +16,7 @@ from .locked import Locked
 from .making import by_operator
 from .own_names import OwnNames
 from .pointers import Pointers, variable
+from .written_through import WrittenThrough
 
 DEPTH = 3
 # How many instances of one class are put into every mode.
@@ -87,6 +88,7 @@ class Observer:
         self.collections = {}
         self.locked = Locked()
         self.names = OwnNames()
+        self.through = WrittenThrough()
         self._layouts = {}
         self._varied = {}
 
@@ -177,6 +179,8 @@ class Observer:
             if name not in UNVARIED and self._varied.get(name, 0) < VARIED:
                 self._varied[name] = self._varied.get(name, 0) + 1
                 self.vary(struct, label, place, self.restored(struct, before), is_new)
+                if self._varied[name] == 1:
+                    self.through.look(self, struct, self.restored(struct, before))
                 if self._varied[name] == 1:
                     self.vary_beside(struct, label, parts)
 
@@ -398,6 +402,7 @@ class Observer:
             write("argument_items", path=path, argument=argument, contexts=contexts)
         self.pointers.write(write)
         self.locked.write(write)
+        self.through.write(write)
         for path in sorted(path for path, has_elements in self.collections.items() if not has_elements):
             write("empty_collection", path=path)
         self.names.write(write)

@@ -16,13 +16,17 @@ class Pointers:
     def __init__(self):
         # path → {label of what was made: whether it leads to something}
         self.filled = {}
+        # paths of those that lead to something on some of what is called the same, and not on the rest of it
+        self.partly = set()
         # path → calls, in the order in which they were tried
         self.fillers = {}
 
     def add(self, path, label, is_filled):
         """Adds what one instance has; a label stands for what leads to something if one of its instances does."""
         known = self.filled.setdefault(path, {})
-        known[label] = known.get(label, False) or is_filled
+        if known.setdefault(label, is_filled) != is_filled:
+            self.partly.add(path)
+            known[label] = True
 
     def add_filler(self, path, call):
         """Adds a call that was seen to fill a pointer."""
@@ -37,7 +41,8 @@ class Pointers:
     def write(self, write):
         """One ``new_pointer`` record for each pointer of which a new instance was seen.
 
-        ``empty`` are the labels of those that have None, [] if most do; ``filled`` then those that do not.
+        ``empty`` are the labels of those that have None, [] if most do; ``filled`` then those that do not. ``partly``:
+        of those that have the same label some do.
         """
         for path in sorted(self.filled):
             labels = {True: [], False: []}
@@ -51,4 +56,5 @@ class Pointers:
                 empty=[] if are_usual else labels[False],
                 filled=labels[True] if are_usual else [],
                 filler=self.filler(path) if labels[False] else "",
+                partly=path in self.partly and not labels[False],
             )

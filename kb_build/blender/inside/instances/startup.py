@@ -91,3 +91,28 @@ def look_at_start(observer):
             for label, area, space in editors():
                 observer.look(label, space, vary=False, is_new=False)
                 observer.ask(area, "start-up area", "")
+
+
+def write_present(write, observer):
+    """A ``start_empty`` record for each collection of ``bpy.data`` in which Blender starts with nothing, and a
+    ``start_filled`` one for each pointer of what it starts with that leads to something.
+    """
+    for prop in bpy.data.bl_rna.properties:
+        if prop.type == "COLLECTION" and not len(getattr(bpy.data, prop.identifier)):
+            write("start_empty", path=f"bpy.types.BlendData.{prop.identifier}")
+    context = bpy.context
+    material = startup_block(bpy.data.materials)
+    roots = (
+        context.scene,
+        context.view_layer,
+        context.object,
+        context.object and context.object.data,
+        material,
+    )
+    filled = set()
+    for root in (*roots, context.scene and context.scene.world):
+        for struct in observer.nearest(root) if root is not None else ():
+            pointers = observer.layout(struct).pointers
+            filled |= {path for name, path in pointers.items() if getattr(struct, name, None) is not None}
+    for path in sorted(filled):
+        write("start_filled", path=path)
