@@ -6,8 +6,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 from kb_build.symbols.api_names import STRUCT, TYPES, interface_part
-from kb_build.symbols.build_options import OPTIONS, option_of
 from kb_build.symbols.paths import as_code, split_path
+from kb_build.symbols.unlisted import OPTIONS, option_of
 from kb_serve.recognise.names.corrections import nearest
 from kb_serve.recognise.names.enum_values import EnumValues
 

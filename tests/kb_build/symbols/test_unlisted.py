@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from kb_build.symbols.build_options import OPTIONS, option_of
+from kb_build.symbols.unlisted import OPTIONS, option_of
 
 _ALL = ("alembic", "haru", "image_dds", "image_hdr", "usd", "xr_openxr")
 
