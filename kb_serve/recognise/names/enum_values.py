@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
 from kb_build.symbols.api_names import TYPES
-from kb_build.symbols.lines import said_taken
+from kb_build.symbols.lines import taken_text
 from kb_build.symbols.paths import argument_of, plain_path
 from kb_build.symbols.records import NOT_TAKEN
 from kb_serve.recognise.names.likely_values import explaining
@@ -186,7 +186,7 @@ class EnumValues:
         where = self.where(owner, value)
         if not where:
             return ""
-        return f"`{owner}` = '{value}' is {said_taken(where)}."
+        return f"`{owner}` = '{value}' is {taken_text(where)}."
 
     def _difference(self, owner: str, values: set[str]) -> int:
         """How many items an enumeration has more or less than some, in that of its modes in which that is fewest; older
