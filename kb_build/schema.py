@@ -16,7 +16,7 @@ from urllib.parse import quote
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCHEMA_VERSION = 15
+SCHEMA_VERSION = 16
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's field for the application a file belongs to
 
 # How a key came about, in the order in which an answer prefers them.
@@ -142,7 +142,7 @@ CREATE TABLE similar_names (
 ) WITHOUT ROWID;
 
 -- Symbols that came after the oldest version known: the first that is known to have them, and the last one known to
--- lack them, empty where that is the one just before.
+-- lack them, empty where that is the one just before. So of those that only newer versions have, where it is not.
 CREATE TABLE since (path TEXT PRIMARY KEY, version TEXT NOT NULL, lacked TEXT NOT NULL) WITHOUT ROWID;
 
 -- Former names (sockets, node classes) that this Blender still takes, tried on an instance, and what they give.

@@ -19,7 +19,7 @@ from kb_build.flow.facts import READ_ACTIVE, made_by
 from kb_build.flow.trees import walk
 from kb_build.symbols.api_names import OPERATORS
 from kb_check.calls import calls_by_node
-from kb_check.made_here import callee_path, places
+from kb_check.made_here import attributes, bindings, called_operators, callee_path, places
 from kb_check.script import once_for_each
 
 if TYPE_CHECKING:
@@ -27,6 +27,11 @@ if TYPE_CHECKING:
 
     from kb_build.symbols.records import Symbol
     from kb_check.script import Script
+
+
+_SCENE = "bpy.context.scene"
+_OF_SCENES = ("bpy.ops.scene.", "bpy.ops.wm.")  # may lead to another scene
+_DEEPEST = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +60,7 @@ def set_before(script: Script, statement: ast.stmt, owner: ast.expr, setting: Sy
     last = _body(script, statements[0]).last_before(place, setting.name, owner)
     match statements[last] if last >= 0 else None:
         case ast.Assign(targets=[ast.Attribute(attr=name) as target], value=value) if name == setting.name:
-            return value if ast.unparse(target.value) == ast.unparse(owner) else None
+            return value if _written_out(script, target.value) == _written_out(script, owner) else None
         case ast.Expr(value=ast.Call() as call) if callee_path(script, call).startswith(OPERATORS):
             return _given_to_maker(script, call, owner, setting)
         case _:
@@ -136,6 +141,35 @@ def _body(script: Script, first: ast.stmt) -> _Body:
                 case _:
                     pass
     return body
+
+
+def _written_out(script: Script, node: ast.expr, depth: int = 0) -> str:
+    """An expression as it is written, a name that is bound once, to a part of the scene, by what it is bound to:
+    ``bpy.context.scene.render.engine`` for ``r.engine``.
+    """
+    text, root = ast.unparse(node), node
+    while isinstance(root, ast.Attribute):
+        root = root.value
+    values = bindings(script).get(root.id, []) if isinstance(root, ast.Name) else []
+    value = values[0] if len(values) == 1 else None
+    if not isinstance(root, ast.Name) or value is None or depth > _DEEPEST:
+        return text
+    whole = _written_out(script, value, depth + 1)
+    is_kept = whole == _SCENE or (whole.startswith(f"{_SCENE}.") and _is_kept(script, whole))
+    return whole + text.removeprefix(root.id) if is_kept and _is_kept(script, _SCENE) else text
+
+
+@once_for_each
+def _is_kept(script: Script, text: str) -> bool:
+    """Whether nothing in a script changes what a part of the scene is, or which scene it is of."""
+    if not all(part.isidentifier() for part in text.split(".")):
+        return False
+    stored = any(
+        not isinstance(node.ctx, ast.Load)
+        for name in text.split(".")
+        for node in attributes(script).get(name, ())
+    )
+    return not stored and not any(path.startswith(_OF_SCENES) for path in called_operators(script))
 
 
 def _last_below(places_of: Sequence[int], place: int) -> int:

@@ -225,6 +225,7 @@ def _symbol(row: dict[str, Any]) -> Symbol:
     fields = symbol_fields(row)
     fields.pop("docstring", None)
     fields.pop(_OF_MODULE, None)
+    made = fields.pop("returned", "")  # by undocumented functions, as their own code says
     fields["description"] = _without_roles(row.get("description", ""))
     path, kind = row["path"], row["kind"]
     fields["parameters"] = parameters = tuple(
@@ -251,7 +252,7 @@ def _symbol(row: dict[str, Any]) -> Symbol:
             parsed = replace(parsed, parameters=tuple(replace(p, required=False) for p in parsed.parameters))
         fields["signature"] = last_name(path) + call[call.index("(") :] if "(" in call else ""
         fields["parameters"] = _completed(parsed.parameters, parameters)
-        fields["returns"] = parsed.returns
+        fields["returns"] = parsed.returns or ((Parameter("", type=made),) if made else ())
     elif kind == "function":
         fields["signature"] = call_text(last_name(path), parameters, marked=True)
     elif kind == "operator":

@@ -32,6 +32,7 @@ from kb_build.flow.types import (
     literal_text,
     union,
 )
+from kb_build.symbols.api_names import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Sequence as Rows
@@ -42,6 +43,7 @@ _ITERATORS = {
     "list": "list", "sorted": "list", "set": "set", "frozenset": "set", "tuple": "list", "reversed": "iterator",
     "iter": "iterator",
 }  # fmt: skip
+_DATA = f"{TYPES}BlendData"
 _PLAIN_RESULTS: dict[str, Type] = {
     "len": INT, "int": INT, "float": FLOAT, "str": STR, "bool": BOOL, "repr": STR, "isinstance": BOOL,
     "any": BOOL, "all": BOOL, "callable": BOOL, "print": NONE,
@@ -115,13 +117,22 @@ class PythonCalls(ScriptCalls):
                 return NONE
             case "hasattr":
                 text = literal_text(arguments[1]) if len(arguments) == 2 else None
-                return Plain("bool", True, FROM_VERSION) if text and self.has(first, text) else BOOL
+                if text and (self.has(first, text) or self._lacks(first, text)):
+                    return Plain("bool", self.has(first, text), FROM_VERSION)
+                return BOOL
             case "getattr" | "delattr":
                 return self._named_attribute(call)
             case "dict":
                 return Mapping(UNKNOWN, UNKNOWN)
             case _:
                 return UNKNOWN
+
+    def _lacks(self, kind: Type, name: str) -> bool:
+        """Whether a value surely lacks an attribute that another Blender gives it: of ``bpy.data``, to which scripts
+        add nothing.
+        """
+        is_data = isinstance(kind, Instance) and kind.cls == _DATA and kind.sure and not self.here.guessing
+        return is_data and self.api.had(_DATA, name) and bool(self.attribute(kind, name).missing)
 
     def _applied(self, function: Type, values: Type, *, keep: bool) -> Type:
         element = self.iterated(values)

@@ -10,7 +10,11 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-_SAID = {"never": "by none that was tried", "at times": "where the machine or a setting allows it"}
+_SAID = {
+    "never": "by none that was tried",
+    "at times": "where the machine or a setting allows it",
+    "before": "before Blender {version}",
+}
 _NAMED_VALUES = 6
 _NAMED_SETTINGS = 3
 _NAMED_THINGS = 16  # a condition that is cut off tells nobody whether it holds
@@ -59,7 +63,8 @@ class Beside(NamedTuple):
 class Taken(NamedTuple):
     """Where a value is taken: ``only`` with what is named, or with all else (``not``).
 
-    ``never`` is by none that was tried, ``at times`` where the machine which was asked did not have it, and others do.
+    ``never`` is by none that was tried, ``at times`` where the machine which was asked did not have it, and others do;
+    ``before`` is in versions before ``version``.
 
     Named are ``settings``, of which one must be so, or what the ``things`` are called that take it, or the ``places``
     that these are in: classes of node trees; of those there, ``there`` tells which. With both ``things`` and
@@ -67,18 +72,19 @@ class Taken(NamedTuple):
     ``in_some_modes``: also with the settings only in modes that nothing tells apart.
     """
 
-    how: Literal["only", "not", "never", "at times"]
+    how: Literal["only", "not", "never", "at times", "before"]
     settings: tuple[Setting, ...] = ()
     things: tuple[str, ...] = ()
     places: tuple[str, ...] = ()
     there: Taken | None = None
     beside: Beside | None = None
     in_some_modes: bool = False
+    version: str = ""
 
     @classmethod
     def of(cls, row: Sequence[Any]) -> Taken:
         """From what JSON makes of one, or one itself."""
-        how, settings, things, places, there, beside, in_some_modes = row
+        how, settings, things, places, there, beside, in_some_modes, version = row
         return cls(
             how,
             tuple(map(Setting.of, settings)),
@@ -87,6 +93,7 @@ class Taken(NamedTuple):
             cls.of(there) if there else None,
             Beside.of(beside) if beside else None,
             in_some_modes,
+            version,
         )
 
     @property
@@ -131,7 +138,7 @@ class Taken(NamedTuple):
     def worded(self, things: Callable[[Sequence[str]], str]) -> str:
         """The text, in which ``things`` words what alone takes it, or does not."""
         if self.how in _SAID:
-            return _SAID[self.how]
+            return _SAID[self.how].format(version=self.version)
         if self.beside:
             return self._text_beside(self.beside)
         if self.places:

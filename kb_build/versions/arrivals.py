@@ -10,6 +10,8 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.unlisted import OPTIONS
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
@@ -17,7 +19,6 @@ if TYPE_CHECKING:
     from kb_build.versions.history import ApiHistory, Arrival
     from kb_build.versions.successors import Succession
 
-_OPTIONS = "bpy.app.build_options."
 _OPERATOR = re.compile(r"bpy\.ops\.\w+\.([a-z0-9]+)")
 _MEMBER = re.compile(r"(bpy\.types\.\w+)\.(\w+)")
 _SOCKET = '"]'
@@ -52,8 +53,8 @@ class _Elsewhere:
         for symbol in symbols:
             if symbol.kind == "class" and symbol.base:
                 self._below[symbol.base].append(symbol.path)
-            elif symbol.path.startswith(_OPTIONS):
-                self._options.add(symbol.path.removeprefix(_OPTIONS).partition("_")[0])
+            elif symbol.path.startswith(OPTIONS):
+                self._options.add(symbol.path.removeprefix(OPTIONS).partition("_")[0])
         self._former: defaultdict[str, list[str]] = defaultdict(list)
         for row in table:
             for new in row.new:

@@ -71,13 +71,15 @@ def is_from_stubs(patch: str) -> bool:
 class RemovedSpan:
     """A symbol that a version lacks, and the versions that have it: the latest ones before, or else the first behind.
 
-    ``gone`` is the first version known to lack it after ``last``; empty for what only newer versions have.
+    ``gone`` is the first version known to lack it after ``last``; empty for what only newer versions have. Of these
+    ``lacked`` is the last version known to lack it before ``first``, empty where that is the one just before.
     """
 
     path: str
     first: str
     last: str
     gone: str
+    lacked: str = ""
 
 
 class Arrival(NamedTuple):
@@ -195,7 +197,15 @@ class ApiHistory:
             last = (mask & (1 << end) - 1).bit_length() - 1
             first = _first_of_run(mask, lacking, position)
             gone = self.versions[end] if before else ""
-            yield RemovedSpan(path, self.versions[first], self.versions[last], gone)
+            lacked = (lacking & (1 << first) - 1).bit_length() - 1
+            in_doubt = not before and 0 <= lacked < first - 1
+            yield RemovedSpan(
+                path,
+                self.versions[first],
+                self.versions[last],
+                gone,
+                self.versions[lacked] if in_doubt else "",
+            )
 
     def symbols(self) -> Iterator[tuple[str, int, int]]:
         """(path, mask, unknown) of everything, the items of shared enumerations at each of their places included."""

@@ -96,11 +96,13 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
             base = bases.get(base, "")
         return False
 
-    removed = [
-        (span.path, span.first, *successors.dated(span))
+    spans = [
+        span
         for span in history.removed_from(version)
         if span.path not in known and is_asked_for(span.path, history, version) and not moved_up(span.path)
     ]
+    removed = [(span.path, successors.came(span)[0], *successors.dated(span)) for span in spans]
+    doubted = [(span.path, *came) for span in spans if (came := successors.came(span))[1]]
     dated = {row[0] for row in removed}
     stated = [
         (row.old, "", successors.before(row.version), row.version)
@@ -126,7 +128,7 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
         names=tuple(names),
         successors=tuple(rows),
         similar_names=tuple(find_similar_names(symbols, history, version, {path for path, *_ in rows})),
-        since=tuple(told_arrivals(symbols, history, version, table)),
+        since=(*told_arrivals(symbols, history, version, table), *doubted),
         versions=history.versions,
         unknown_modules=tuple(path for path in history.unknown_modules(version) if path not in known),
     )

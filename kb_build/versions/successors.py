@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 
 SUCCESSORS_FILE = Path(__file__).resolve().parents[2] / "corpora" / "history" / "successors.csv"
 COLUMNS = ["old", "new", "how", "version", "source"]
+_OTHERWISE = "It is used in another way."
+_HELD_BY_NAME = re.compile(r"""\.get\(['"]""")  # how something is asked for that others are kept beside
+_TOP = frozenset({"", "bpy.types", "bpy.ops", "bpy.context"})
 _STEPS = 5  # names that were renamed more often than that are none
 
 
@@ -86,13 +89,24 @@ class Successors:
         self._known = known
         until = version_key(version)
         table = list(table)
+        # The versions in which a name took the place of others.
+        self._came: dict[str, list[str]] = {}
+        for row in table:
+            for new in row.new:
+                self._came.setdefault(new, []).append(row.version)
         rows = [row for row in table if version_key(row.version) <= until]
-        # What took a place later: the new name → its row, those first that were only renamed; and of these (how such a
+        # What took a place later: the new name → its rows, those first that were only renamed; and of these (how such a
         # name is written, the row).
         later = [row for row in table if version_key(row.version) > until and row.new]
         renamed = [row for row in later if _only_renames(row)]
-        by_weight = sorted((row for row in reversed(later) if self._exists(row.old)), key=_only_renames)
-        self._replaced_later = {new: row for row in by_weight for new in row.new}
+        self._replaced_later: dict[str, list[Succession]] = {}
+        for row in sorted((row for row in later if self._exists(row.old)), key=_only_renames, reverse=True):
+            for new in row.new:
+                if self._came_for(new, row):
+                    self._replaced_later.setdefault(new, []).append(row)
+        for new, taken in self._replaced_later.items():
+            # Of what went before the name came, it did not take the place at once.
+            taken.sort(key=lambda row, new=new: history.exists(new, row.version) is False)
         self._renamed_alike = [(_pattern(row.new[0]), row) for row in renamed if "*" in row.new[0]]
         self._rows = {row.old: row for row in rows if "*" not in row.old}
         # By what precedes the star, each with its place in the table.
@@ -116,6 +130,17 @@ class Successors:
         if not version_key(span.last) < version_key(row.version) < version_key(span.gone):
             return span.last, span.gone
         return self.before(row.version), row.version
+
+    def came(self, span: RemovedSpan) -> tuple[str, str]:
+        """(first, lacked) of what only newer versions have: as the history has it, or where that is in doubt, the
+        version in which it took something's place.
+        """
+        if span.lacked:
+            earliest, latest = version_key(span.lacked), version_key(span.first)
+            came = [one for one in self._came.get(span.path, ()) if earliest < version_key(one) <= latest]
+            if came:
+                return min(came, key=version_key), ""
+        return span.first, span.lacked
 
     def before(self, version: str) -> str:
         """The version before one; empty for the oldest. Raises StoreError for one that the history does not have."""
@@ -143,8 +168,7 @@ class Successors:
     def _of(self, path: str, step: int) -> Iterator[Succession]:
         row = self._row(path)
         if row is None:
-            earlier = self._earlier(path)
-            yield from (earlier,) if earlier else self._with_owner(path)
+            yield from self._earlier(path) or self._with_owner(path)
             return
         if not row.new:
             yield row
@@ -165,16 +189,41 @@ class Successors:
         if ends and not seen:
             yield Succession(path, (), ends[0].how, ends[0].version, ends[0].source)
 
-    def _earlier(self, path: str) -> Succession | None:
-        """What is here in place of a name of later versions; None where nothing is known to be."""
-        if row := self._replaced_later.get(path):
-            return Succession(path, (row.old,), "", row.version, row.source)
+    def _earlier(self, path: str) -> list[Succession]:
+        """What is here in place of a name of later versions; nothing where that is not known.
+
+        Of several names that it took the place of, otherwise than by a new name: those that have its own owner.
+        """
+        if rows := self._replaced_later.get(path):
+            owner = split_path(path)[0]
+            others = [row for row in rows if split_path(row.old)[0] == owner]
+            chosen = rows[:1] if _only_renames(rows[0]) else others or rows[:1]
+            return [_turned(path, row.old, row) for row in chosen]
         for pattern, row in self._renamed_alike:
             match = pattern.fullmatch(path)
             old = _filled(row.old, match.groups()) if match else ""
             if old and "*" not in old and self._exists(old):
-                return Succession(path, (old,), "", row.version, row.source)
-        return None
+                return [_turned(path, old, row)]
+        above, mark, name = split_path(path)
+        for row in self._replaced_later.get(above, ()):
+            # The name of the owner was another one's until it was given to this one.
+            old = joined_path(row.old, mark, name)
+            if _only_renames(row) and self._exists(above) and self._exists(old):
+                names = (split_path(cls)[2] for cls in (above, row.old))
+                how = "What Blender {} calls `{}` is `{}` here.".format(row.version, *names)
+                return [Succession(path, (old,), how, row.version, row.source)]
+        return []
+
+    def _came_for(self, new: str, row: Succession) -> bool:
+        """Whether what a name took the place of later does here what the name does. Not where the name holds that
+        among others, by names; nor where both were there for a while, on two things that are both here.
+        """
+        if _only_renames(row):
+            return True
+        owner = split_path(new)[0]
+        both = self._history.mask(row.old) & self._history.mask(new)
+        elsewhere = owner not in _TOP and owner != split_path(row.old)[0] and self._exists(owner)
+        return not _HELD_BY_NAME.search(row.how) and not (both and elsewhere)
 
     def _with_owner(self, path: str) -> Iterator[Succession]:
         above, mark, name = split_path(path)
@@ -211,6 +260,11 @@ class Successors:
             path = self._bases.get(path, "")
             if not path:
                 return
+
+
+def _turned(path: str, old: str, row: Succession) -> Succession:
+    """What is here in place of a name of later versions, by the row that says what that took the place of."""
+    return Succession(path, (old,), "" if _only_renames(row) else _OTHERWISE, row.version, row.source)
 
 
 def _only_renames(row: Succession) -> bool:

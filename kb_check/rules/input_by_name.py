@@ -28,13 +28,16 @@ if TYPE_CHECKING:
 
 
 def _check(script: Script) -> Iterator[Finding]:
+    custom = CustomProperties(script.names.reader)
+    if custom.inputs_are_properties:  # then no key is one: see no-custom-properties
+        return
     for node in script.all(ast.Subscript):
         owner, key = script.type_of(node.value), script.type_of(node.slice)
         name = literal_text(key) if key else None
         if isinstance(owner, Instance) and owner.cls == NODES_MODIFIER and name in named_inputs(script):
             yield Finding(
                 RULE.id, "warning", script.span(node),
-                CustomProperties(script.names.reader).on_inputs(), NODES_MODIFIER,
+                custom.on_inputs(), NODES_MODIFIER,
             )  # fmt: skip
 
 

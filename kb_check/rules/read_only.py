@@ -29,6 +29,7 @@ from kb_check.given import is_of_instance
 from kb_check.made_here import alias, named_words
 from kb_check.raised import LACKS
 from kb_check.rule import Rule
+from kb_check.settings_before import set_before
 from kb_serve.recognise.changed_by import changed_by
 
 if TYPE_CHECKING:
@@ -111,13 +112,32 @@ def _is_fixed_array(symbol: Symbol) -> bool:
 
 
 def _locked(script: Script, row: Resolution, symbols: list[Symbol | None]) -> Iterator[Finding]:
-    """What can be assigned only after another setting, of which the script has no word."""
+    """What can be assigned only after another setting, of which the script has no word, or which it has just set
+    otherwise.
+    """
     settings = {freed_by(symbol) if symbol else "" for symbol in symbols}
     setting = settings.pop() if len(settings) == 1 else ""
     if setting and setting.partition(" ")[0] not in named_words(script):
         path = next(symbol.path for symbol in symbols if symbol)
         told = f"`{path}` cannot be assigned before `{setting}`: a new one has it otherwise."
         yield Finding(RULE.id, "warning", script.name_span(row.node), told, path)
+    elif setting and (kept := _kept_locked(script, row, symbols[0], setting)):
+        path = next(symbol.path for symbol in symbols if symbol)
+        told = f"`{path}` cannot be assigned here, after `{kept}`: write `{setting}` before."
+        yield Finding(RULE.id, "error", script.name_span(row.node), told, path)
+
+
+def _kept_locked(script: Script, row: Resolution, locked: Symbol | None, setting: str) -> str:
+    """What is set before an assignment and keeps its property locked; empty where nothing surely is."""
+    name, _, free = setting.partition(" = ")
+    symbol = script.api.symbols.symbol(f"{locked.owner}.{name}") if locked else None
+    if symbol is None or row.statement is None or not isinstance(row.node, ast.Attribute):
+        return ""
+    before = set_before(script, row.statement, row.node.value, symbol)
+    is_told = (
+        isinstance(before, ast.Constant) and isinstance(before.value, bool) and repr(before.value) != free
+    )
+    return f"{name} = {ast.unparse(before)}" if before and is_told else ""
 
 
 def _locked_kind(script: Script, row: Resolution, symbols: list[Symbol | None]) -> str:

@@ -81,7 +81,7 @@ _NO_TIMERS = (
     "Timers run between the events of a Blender with a window. Without one (`--background`, or `import bpy` in another "
     "Python) none ever runs: call the function yourself there."
 )
-_NO_SIZES = "An empty list crashes Blender 5.1: `if sizes: data.add_{}(sizes)`. Each size is at least 1."
+_NO_SIZES = "An empty list crashes Blender: `if sizes: data.add_{}(sizes)`. Each size is at least 1."
 _NO_RETIMING = (
     "Assigning a key's `timeline_frame` may crash Blender: 5.1 where the scene has an earlier strip without such keys, "
     "4.5 always. Make keys where they shall be, `strip.retiming_keys.add(timeline_frame=20)`; "

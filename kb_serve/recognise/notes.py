@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from kb_build.symbols.api_names import STRUCT, TYPES, interface_part
 from kb_build.symbols.paths import as_code, split_path
+from kb_build.symbols.unlisted import OPTIONS, option_of
 from kb_serve.recognise.names.corrections import nearest
 from kb_serve.recognise.names.enum_values import EnumValues
 
@@ -92,6 +93,9 @@ class Notes:
 
     def removed(self, symbol: RemovedSymbol) -> str:
         """When a symbol was removed, and what takes its place: by a source, or only perhaps."""
+        if option := self._option_of(symbol):
+            told = f"`{as_code(symbol.path)}` is not in this build of Blender {self._version}"
+            return f"{told}: it is in those that are made with it, where `{option}` is True."
         return " ".join(
             (
                 f"`{as_code(symbol.path)}` does not exist in Blender {self._version}: {self._span(symbol)}.",
@@ -99,9 +103,21 @@ class Notes:
             )
         )
 
+    def _option_of(self, symbol: RemovedSymbol) -> str:
+        """The option of the build that an operator needs of which it is not known since when Blender has it."""
+        _, lacked = ("", "") if symbol.gone else self._reader.arrival(symbol.path)
+        return option_of(symbol.path, self._build_options) if lacked else ""
+
+    @cached_property
+    def _build_options(self) -> frozenset[str]:
+        paths = self._reader.rows("SELECT path FROM symbols WHERE owner = ?", OPTIONS.rstrip("."))
+        return frozenset(path.removeprefix(OPTIONS) for (path,) in paths)
+
     def _span(self, symbol: RemovedSymbol) -> str:
         if not symbol.gone:
-            return f"new in {symbol.first}"
+            _, lacked = self._reader.arrival(symbol.path)
+            too = f" ({lacked} lacks it)" if lacked not in {"", self._version} else ""
+            return f"new in {symbol.first}{' or a little before' if lacked else ''}{too}"
         versions = self._reader.history_versions
         if symbol.is_dated(versions):
             last = f" (last in {symbol.last})" if symbol.was_last(versions) else ""

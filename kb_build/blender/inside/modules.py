@@ -29,6 +29,15 @@ PRIVATE_BUT_DOCUMENTED = {"bpy.props._PropertyDeferred"}
 # What modules have that are struct sequences, as bpy.app.handlers, besides their fields.
 TUPLES_OWN = {*dir(tuple), "n_fields", "n_sequence_fields", "n_unnamed_fields"}
 PLAIN = (bool, int, float, str, bytes, tuple, list, dict, set, frozenset)
+# What is written so in Python → its type.
+DISPLAYS = {
+    ast.Dict: "dict[Any, Any]",
+    ast.DictComp: "dict[Any, Any]",
+    ast.List: "list[Any]",
+    ast.ListComp: "list[Any]",
+    ast.Set: "set[Any]",
+    ast.SetComp: "set[Any]",
+}
 
 
 def load(name):
@@ -92,6 +101,42 @@ def returned_type(function):
     return f"{text}[{element.__module__}.{element.__qualname__}]" if element else text
 
 
+def own_nodes(function):
+    """The nodes of a function's body, without those of functions and classes within it."""
+    found = list(function.body)
+    for node in found:
+        if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)):
+            found += ast.iter_child_nodes(node)
+    return found
+
+
+def returned_display(function):
+    """What a function written in Python surely makes and returns, a dictionary, a list or a set; empty for others."""
+    try:
+        tree = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+    except (OSError, TypeError, SyntaxError, IndexError):
+        return ""
+    if not isinstance(tree, ast.FunctionDef) or not isinstance(tree.body[-1], ast.Return):
+        return ""
+    nodes = own_nodes(tree)
+    stored = [node.id for node in nodes if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load)]
+    made = {
+        node.targets[0].id: node.value
+        for node in nodes
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name) and len(node.targets) == 1
+    }
+    kinds = set()
+    for node in nodes:
+        if isinstance(node, (ast.Yield, ast.YieldFrom)):
+            return ""
+        if isinstance(node, ast.Return):
+            value = node.value
+            if isinstance(value, ast.Name) and stored.count(value.id) == 1:
+                value = made.get(value.id)
+            kinds.add(DISPLAYS.get(type(value), ""))
+    return kinds.pop() if len(kinds) == 1 else ""
+
+
 def write_member(write, owner, name, value, flags=()):
     """A method or attribute of a class."""
     attribute = isinstance(value, ATTRIBUTE_TYPES)
@@ -111,6 +156,7 @@ def write_member(write, owner, name, value, flags=()):
         docstring=inspect.getdoc(function) or "",
         type=returned_type(value.fget) if isinstance(value, property) else "",
         signature="" if attribute else signature(function),
+        returned="" if attribute or inspect.getdoc(function) else returned_display(function),
         flags=flags,
     )
 
@@ -290,6 +336,7 @@ class Walk:
             owner=owner,
             docstring=text,
             signature=signature(value),
+            returned="" if text else returned_display(value),
             parameters=parameters,
             flags=flags_of(value),
             **({"of_module": True} if isinstance(value, types.FunctionType) else {}),

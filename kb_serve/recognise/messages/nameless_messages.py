@@ -23,6 +23,7 @@ from kb_serve.recognise.messages.nameless.vectors import VECTORS
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
+    from kb_serve.recognise.messages.nameless.message import NamelessMessage
     from kb_serve.recognise.recognition import Recognition
 
 _SURE = 0.97
@@ -71,7 +72,7 @@ class NamelessMessages:
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds what such a message is about, with what helps."""
         for message in NAMELESS_MESSAGES:
-            if message.is_in(query) and self._reader.entry(message.paths[0]):
+            if message.is_in(query) and self._is_told(message):
                 for rank, path in enumerate(message.paths):
                     if "/" not in path or self._reader.is_page(path):
                         recognition.add(path, _SURE - 0.03 * rank, "error message")
@@ -80,3 +81,8 @@ class NamelessMessages:
         if _ONE_OF_SEVERAL.search(query):
             recognition.notes.append(_NOT_ONE)
             recognition.add("bpy.props.FloatVectorProperty", _SURE, "error message")
+
+    def _is_told(self, message: NamelessMessage) -> bool:
+        """Whether what is known of a message holds in this Blender."""
+        has_first = self._reader.entry(message.paths[0]) is not None
+        return has_first and not (message.lacking and self._reader.entry(message.lacking))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
 from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.lines import taken_text
 from kb_build.symbols.paths import argument_of, plain_path
 from kb_serve.recognise.names.likely_values import explaining
 from kb_serve.recognise.recognition import WHOLE_LABEL
@@ -181,7 +182,9 @@ class EnumValues:
     def condition(self, owner: str, value: str) -> str:
         """A sentence on where an enumeration takes a value; "" if everywhere, or nowhere."""
         where = self.where(owner, value)
-        return f"`{owner}` = '{value}' is {where.said()}." if where else ""
+        if not where:
+            return ""
+        return f"`{owner}` = '{value}' is {taken_text(where)}."
 
     def _difference(self, owner: str, values: set[str]) -> int:
         """How many items an enumeration has more or less than some, in that of its modes in which that is fewest; older

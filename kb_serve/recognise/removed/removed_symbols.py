@@ -69,6 +69,11 @@ def _nearest_to(owner: str, removed: RemovedSymbol) -> RemovedSymbol:
     return replace(removed, successors=tuple(own_first))
 
 
+def _owners_of_targets(removed: RemovedSymbol) -> Iterator[str]:
+    """The classes that have what takes a symbol's place."""
+    yield from (split_path(target)[0] for target in removed.targets)
+
+
 def _new_names(removed: RemovedSymbol) -> Iterator[str]:
     """What took a symbol's place, without its class, and how."""
     for successor in removed.successors:
@@ -121,12 +126,20 @@ class RemovedSymbolLookup:
                     yield replace(successor, target=f"{path.removesuffix(item)}{new}")
 
     def of_member(self, owner: str, name: str) -> RemovedSymbol | None:
-        """A removed member of a class, of its bases, of what they were called before, or of a module."""
+        """A removed member of a class, of its bases, of what they were called before, or of a module.
+
+        What a base itself had, or will have, comes before what the former name of a class had.
+        """
         lineage = [entry.path for entry in self._reader.lineage(owner)] or [owner]
-        for ancestor in lineage:
-            for holder in (ancestor, _INSTANCES.get(ancestor), *self._former_names.get(ancestor, ())):
-                if holder and (removed := self.of_path(f"{holder}.{name}")):
-                    return removed if holder == ancestor else _nearest_to(ancestor, removed)
+        own = [(ancestor, ancestor) for ancestor in lineage]
+        others = [
+            (ancestor, holder)
+            for ancestor in lineage
+            for holder in (_INSTANCES.get(ancestor), *self._former_names.get(ancestor, ()))
+        ]
+        for ancestor, holder in (*own, *others):
+            if holder and (removed := self.of_path(f"{holder}.{name}")):
+                return removed if holder == ancestor else _nearest_to(ancestor, removed)
         return None
 
     def of_part(self, path: str, part: str) -> RemovedSymbol | None:
@@ -138,7 +151,8 @@ class RemovedSymbolLookup:
     def below(self, owner: str, name: str, variable: str = "") -> RemovedSymbol | None:
         """A removed member of a class below ``owner``: ``Material.alpha`` for an ID.
 
-        Of several classes the one that ``variable`` may hold; that which counts most, if they all lost it alike.
+        Of several classes the one that ``variable`` may hold; that which counts most, if they all lost it alike. Where
+        each has it later, and another class has it until then, nothing tells which is meant.
         """
         found = {path: removed for path in self.paths_below(owner, name) if (removed := self.of_path(path))}
         present = {
@@ -146,7 +160,8 @@ class RemovedSymbolLookup:
         }
         found = present or found  # of the class before what it was called before
         alike = len({(removed.gone, *_new_names(removed)) for removed in found.values()}) == 1
-        if len(found) > 1 and (owner == ID or not alike):
+        until = {cls for one in found.values() if not one.gone for cls in _owners_of_targets(one)}
+        if len(found) > 1 and (owner == ID or not alike or len(until) > 1):
             usual = [f"{cls}.{name}" for cls in usual_classes(variable)]
             return next((found[path] for path in usual if path in found), None)
         return found.get(self._likeliest(found, variable))

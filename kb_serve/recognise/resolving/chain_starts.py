@@ -10,7 +10,8 @@ from kb_build.symbols.api_names import ID, TYPES
 from kb_build.symbols.python_values import is_new_list
 from kb_serve.reader import PROPERTIES
 from kb_serve.recognise.resolving.chain_values import ChainValue
-from kb_serve.recognise.resolving.variables import Variables
+from kb_serve.recognise.resolving.subscripts import INPUT_KEY, NODES_MODIFIER, PROPERTIES_OF_MODIFIER
+from kb_serve.recognise.resolving.variables import USUAL, Variables
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,6 +33,7 @@ _IMPORTED = ("mathutils.", "bmesh.types.", "bpy_extras.")
 _INSTANCE = "self"  # of a class of the script's own, whose attributes are like variables
 _NAMED_LIKE_A_MODULE = 0.9  # fit of a class that a variable is named after, which is no module then
 _MODULE_THAT_LACKS = 0.6  # … of a module that lacks what is read, by its last name
+_OF_INPUTS = PROPERTIES_OF_MODIFIER.rpartition(".")[2]
 _COLLECTION_FIT = 0.7  # of a variable with the name of a collection property that is used as one
 _USUAL = 0.05
 _LIGHTER = 0.0005  # for each that counts more
@@ -75,7 +77,8 @@ class ChainStarts:
     def _of_variable(self, chain: Chain) -> Iterator[tuple[ChainValue, float]]:
         """(value, fit) for everything that a variable can stand for: by its name, then by the member that it has."""
         seen: set[str] = set()
-        for cls, fit in self._variables.classes(chain.root):
+        by_key = [(NODES_MODIFIER, USUAL)] if _is_by_input(chain) else []
+        for cls, fit in (*self._variables.classes(chain.root), *by_key):
             if cls not in seen:
                 seen.add(cls)
                 yield ChainValue(cls, cls), fit
@@ -139,6 +142,12 @@ class ChainStarts:
                 if entry and (is_imported or entry.kind in {"module", "class"}):
                     return self._values.of(entry), max(0, length - 1 - extra), 1.0
         return None
+
+
+def _is_by_input(chain: Chain) -> bool:
+    """Whether a variable is asked for what only inputs of a geometry-nodes modifier are called."""
+    steps = chain.steps[1:] if _first_name(chain) == _OF_INPUTS else chain.steps
+    return bool(steps) and steps[0].kind == "key" and INPUT_KEY.fullmatch(steps[0].text) is not None
 
 
 def _first_name(chain: Chain) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import stem, words
@@ -12,9 +13,16 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 NODES_MODIFIER = f"{TYPES}NodesModifier"
+OF_NODES_MODIFIER = (
+    NODES_MODIFIER,
+    f"{TYPES}NodesModifierProperties",
+)  # what the inputs were, or are, asked of
 PROPERTIES_OF_OPERATORS = f"{TYPES}OperatorProperties"
 _NEW_INPUT = f"{TYPES}NodeTreeInterface.new_socket"
-# The classes whose instances, and whose subclasses' instances, take custom properties.
+# How Blender identifies the inputs and outputs of a group, as keys of its modifier: by itself no other key looks so.
+INPUT_KEY = re.compile(r"((?:Socket|Input|Output)_\d+)(_use_attribute|_attribute_name)?")
+# The classes whose instances, and whose subclasses' instances, take custom properties. (Of the modifier, whose inputs
+# are properties since Blender 5.2, the same keys are asked, and :meth:`CustomProperties.note` tells what takes them.)
 _TAKING = frozenset(
     {
         "AssetMetaData",
@@ -24,6 +32,7 @@ _TAKING = frozenset(
         "ID",
         "Node",
         "NodesModifier",
+        "NodesModifierProperties",
         "OperatorProperties",
         "PoseBone",
         "PropertyGroup",
@@ -38,7 +47,15 @@ _REGISTERED = (
     "A property that is registered by `bpy.props` is not found in brackets since Blender 5.0: it is the attribute "
     '`.{name}`, and what is stored of it `.bl_system_properties_get()["{name}"]`, once it was set.'
 )
-_PROPERTIES = f"{NODES_MODIFIER}.properties"  # since Blender 5.2
+PROPERTIES_OF_MODIFIER = f"{NODES_MODIFIER}.properties"  # since Blender 5.2
+_AS_PROPERTIES = (
+    "Inputs of a geometry-nodes modifier are attributes of `modifier.properties.inputs` since Blender 5.2, by the "
+    "identifier of the group's input: `modifier.properties.inputs.Socket_2.value = 5.0`, or "
+    '`getattr(modifier.properties.inputs, modifier.node_group.interface.items_tree["Size"].identifier).value = 5.0`, '
+    "then `obj.update_tag()`. An attribute is used instead of a value by `.type = 'ATTRIBUTE'` and "
+    '`.attribute_name = "name"` of the same; a menu takes the name of an entry. Brackets on the modifier, or on its '
+    f"`properties`, raise TypeError. `{PROPERTIES_OF_MODIFIER}` is None until the modifier has a `node_group`."
+)
 _ATTRIBUTES = (
     'An attribute is used instead of a value by `modifier[identifier + "_use_attribute"] = True` and '
     '`modifier[identifier + "_attribute_name"] = "name"`.'
@@ -84,6 +101,11 @@ class CustomProperties:
         return [entry.path for entry in self._reader.descendants(cls) if entry.name in taking]
 
     @property
+    def inputs_are_properties(self) -> bool:
+        """Whether the inputs of a geometry-nodes modifier are properties, and the modifier takes no keys."""
+        return self._reader.entry(PROPERTIES_OF_MODIFIER) is not None
+
+    @property
     def _are_apart(self) -> bool:
         return self._reader.entry(_APART) is not None
 
@@ -93,7 +115,7 @@ class CustomProperties:
 
     def note(self, cls: str, name: str) -> str:
         """A sentence on ``x["name"]``, where ``x`` is of a class that takes custom properties."""
-        if cls == NODES_MODIFIER:
+        if cls in OF_NODES_MODIFIER:
             return self.on_inputs()
         said = (
             f'`["{name}"]` is a custom property of `{cls}`, not one of its attributes: assigning makes it, reading '
@@ -112,12 +134,12 @@ class CustomProperties:
 
     def on_attributes(self) -> str:
         """How an attribute is used as an input of such a modifier; empty where inputs are no custom properties."""
-        return "" if self._reader.entry(_PROPERTIES) else _ATTRIBUTES
+        return "" if self.inputs_are_properties else _ATTRIBUTES
 
     def on_inputs(self) -> str:
         """How the inputs of a geometry-nodes modifier are set."""
-        if self._reader.entry(_PROPERTIES):
-            return f"Inputs of a geometry-nodes modifier are values of `{_PROPERTIES}`, by the identifier of the input."
+        if self.inputs_are_properties:
+            return _AS_PROPERTIES
         items = "interface.items_tree" if self._reader.entry(_ITEMS) else "inputs"
         told = [
             "Inputs of a geometry-nodes modifier are set by the identifier of the group's input, not by its name: "

@@ -141,6 +141,22 @@ def test_pointers_of_new_things_say_whether_they_are_none(tmp_path: Path) -> Non
     ]
 
 
+def test_what_the_code_of_a_function_makes_is_what_it_returns_where_nothing_else_says_it(
+    tmp_path: Path,
+) -> None:
+    said = "Copies.\n\n:rtype: int"
+    extract = read(
+        tmp_path,
+        STRUCT,
+        symbol("bpy.types.bpy_struct.copy", "function", signature="(self)", returned="dict[Any, Any]"),
+        symbol(
+            "bpy.types.bpy_struct.count", "function", signature="(self)", docstring=said, returned="list[Any]"
+        ),
+    )
+    returned = {one.name: [result.type for result in one.returns] for one in extract.symbols if one.returns}
+    assert (returned["copy"], returned["count"]) == (["dict[Any, Any]"], ["int"])
+
+
 def test_former_names_that_still_work_are_kept(tmp_path: Path) -> None:
     row = {"record": "still_works", "path": "bpy.types.Old", "taken_as": "bpy.types.New"}
     assert read(tmp_path, STRUCT, row).still_works == (("bpy.types.Old", "bpy.types.New"),)

@@ -80,6 +80,7 @@ MANY = tuple(f"{letter} b" for letter in "cdefghij")
             "with format='V' only if Video.codec='x'",
             "taken with format='V' only if Video.codec='x'",
         ),
+        (Taken("before", version="4.0"), "before Blender 4.0", "taken before Blender 4.0"),
         (NEVER, "by none that was tried", "taken by none that was tried"),
         (
             AT_TIMES,

@@ -80,6 +80,40 @@ def test_a_name_of_later_versions_has_the_one_that_it_took_the_place_of(
     assert not here or not Successors(table, history, "5.1", {}).of(later)
 
 
+@pytest.mark.parametrize(
+    ("later", "version", "here"),
+    [
+        # Of those that it took the place of, the ones that went when it came, and not a node's of long before.
+        ("bpy.types.NodeTree.interface", "3.4", ["bpy.types.NodeTree.inputs", "bpy.types.NodeTree.outputs"]),
+        # It holds much besides what it took the place of.
+        ("bmesh.types.BMLayerAccessEdge.bool", "4.2", []),
+        # Both were there for a while, on things that are both here.
+        ("bpy.types.Mesh.shade_smooth", "3.4", []),
+        # The class of that name is another one here.
+        ("bpy.types.GreasePencil.layer_groups", "4.5", ["bpy.types.GreasePencilv3.layer_groups"]),
+        ("bpy.types.GreasePencilFrame.drawing", "4.2", ["bpy.types.GPencilFrame.strokes"]),
+    ],
+)
+def test_what_is_here_in_place_of_a_name_of_later_versions(
+    history: ApiHistory, table: list[Succession], later: str, version: str, here: list[str]
+) -> None:
+    found = Successors(table, history, version, {}).of(later)
+    assert [target for row in found for target in row.new] == here
+    # None is written in the other's place with nothing else changed.
+    assert all(row.how for row in found)
+
+
+def test_a_name_came_when_it_took_the_place_of_another_where_nothing_else_is_known(
+    history: ApiHistory, table: list[Succession]
+) -> None:
+    successors = Successors(table, history, "3.4", {})
+    came = {span.path: successors.came(span) for span in history.removed_from("3.4") if not span.gone}
+    principled = "bpy.types.ShaderNodeBsdfPrincipled.inputs"
+    assert came[f'{principled}["Subsurface Weight"]'] == ("4.0", "")
+    assert came["bpy.types.ColorManagedViewSettings.view_transform:AgX"] == ("4.2", "3.4")
+    assert came["bpy.types.NodeTree.interface"] == ("4.0", "")
+
+
 def test_every_new_name_came_by_then_or_later(history: ApiHistory, table: list[Succession]) -> None:
     wrong = [
         target

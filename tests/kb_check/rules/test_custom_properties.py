@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
+from other_versions import base_of, errors_in
 from statements_in_blender import run_statements
+
+from kb_check.checker import Checker
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-    from kb_check.checker import Checker
 
 _OPERATOR = """\
 class Count{at}(bpy.types.Operator):
@@ -146,3 +147,46 @@ def test_a_declaration_has_no_items(
     seen = run_statements(tmp_path, [*start, line])
     found = rule_checker.check("\n".join([*start, line]), rules=["not-subscriptable"])
     assert (bool(seen[2][0]), bool(found)) == (refused, refused)
+
+
+_OF_MODIFIER: str = """\
+import bpy
+modifier = bpy.data.objects["Cube"].modifiers.new("Nodes", "NODES")
+modifier.node_group = group = bpy.data.node_groups.new("Group", "GeometryNodeTree")
+size = group.interface.new_socket("Size", in_out="INPUT", socket_type="NodeSocketFloat")
+assert size.identifier == "Socket_0"
+modifier["Socket_0"] = 2.0
+modifier[size.identifier] = 3.0
+modifier["Socket_0_use_attribute"] = True
+modifier[size.identifier + "_attribute_name"] = "size"
+print(modifier.get("Socket_0"))
+print("Socket_0" in modifier)
+modifier.id_properties_ui("Socket_0")
+modifier.properties["Socket_0"] = 2.0
+modifier.properties.inputs["Socket_0"]
+bpy.data.objects["Cube"]["Socket_0"] = 2.0
+"""
+
+
+@pytest.mark.blender
+def test_geometry_nodes_modifiers_have_none_where_their_inputs_are_properties(tmp_path: Path) -> None:
+    with Checker(base_of("5.2")) as checker:
+        found = checker.check(_OF_MODIFIER, rules=["no-custom-properties"])
+    errors = errors_in("5.2", tmp_path, _OF_MODIFIER.splitlines())
+    refused = [at for at, error in enumerate(errors, 1) if error]
+    assert [one.span.line for one in found] == refused == [6, 7, 8, 9, 10, 11, 12, 13]
+    mended = {one.span.line: one.fix.edits[0].text for one in found if one.fix}
+    lines = _OF_MODIFIER.splitlines()
+    for at, text in mended.items():
+        lines[at - 1] = f"{text} = {lines[at - 1].rpartition(' = ')[2]}"
+    assert list(mended) == [6, 7, 9, 13]
+    now = errors_in("5.2", tmp_path, lines)
+    assert [at for at, error in enumerate(now, 1) if error] == [8, 10, 11, 12]
+
+
+def test_geometry_nodes_modifiers_have_them_where_their_inputs_are_keys(
+    rule_checker: Checker, tmp_path: Path
+) -> None:
+    lines = _OF_MODIFIER.splitlines()[:11]
+    assert [error for error, *_ in run_statements(tmp_path, lines) if error] == []
+    assert rule_checker.check("\n".join(lines), rules=["no-custom-properties"]) == []

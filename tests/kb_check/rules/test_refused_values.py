@@ -5,12 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
+from other_versions import base_of
 from statements_in_blender import run_statements
+
+from kb_check.checker import Checker
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kb_check.checker import Checker
     from kb_check.findings import Finding
 
 SETTING = """\
@@ -459,3 +461,47 @@ def test_sure_fixes_run(rule_checker: Checker, tmp_path: Path, rule: str) -> Non
             fixed.append(text)
     answers = run_statements(tmp_path, [*SETTING, *fixed])[len(SETTING) :]
     assert [(line, error) for line, (error, *_) in zip(fixed, answers, strict=True) if error] == []
+
+
+_SPELT: str = """\
+import bpy
+r = bpy.context.scene.render
+bpy.context.scene.render.image_settings.media_type = 'VIDEO'
+r.image_settings.file_format = 'PNG'
+scene = bpy.context.scene
+settings = scene.render.image_settings
+r.image_settings.media_type = 'IMAGE'
+settings.file_format = 'PNG'
+settings.file_format = 'FFMPEG'
+"""
+
+
+def test_a_part_of_the_scene_is_one_by_a_name_and_written_out(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = _SPELT.splitlines()
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
+    found = rule_checker.check(_SPELT, rules=["refused-value"])
+    assert [one.span.line for one in found] == refused == [4, 9]
+    # Of another scene nothing is known.
+    other = _SPELT.replace(
+        "bpy.context.scene.render.image", "bpy.ops.scene.new()\nbpy.context.scene.render.image", 1
+    )
+    assert 5 not in [one.span.line for one in rule_checker.check(other, rules=["refused-value"])]
+
+
+@pytest.mark.blender
+def test_names_that_a_later_blender_lost_are_taken_before() -> None:
+    with Checker(base_of("3.4")) as checker:
+        names = ("2D_UNIFORM_COLOR", "3D_FLAT_COLOR", "UNIFORM_COLOR")
+        code = "import gpu\n" + "".join(f"gpu.shader.from_builtin({name!r})\n" for name in names)
+        assert checker.check(code) == []
+
+
+@pytest.mark.blender
+def test_a_copy_of_the_context_is_a_dictionary_in_each_version() -> None:
+    with Checker(base_of("4.2")) as checker:
+        code = (
+            "import bpy\ncontext = bpy.context.copy()\nbpy.ops.object.select_all(context, action='SELECT')\n"
+        )
+        (found,) = checker.check(code)
+    assert found.severity == "error"
+    assert found.span.line == 3

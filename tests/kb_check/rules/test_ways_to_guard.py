@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from textwrap import dedent, indent
 from typing import TYPE_CHECKING
 
@@ -330,3 +331,28 @@ def test_a_handler_lets_pass_what_it_catches(rule_checker: Checker, tmp_path: Pa
     raised = [one for one, row in zip(tried, done, strict=True) if row[0]]
     assert len(tried) / 3 < len(raised) < len(tried)
     assert [one for one in tried if _errors(rule_checker, one)] == raised
+
+
+_OF_DATA: str = """\
+import bpy
+light = bpy.data.lamps.new("L", "SUN") if hasattr(bpy.data, "lamps") else bpy.data.lights.new("L", "SUN")
+light.energi
+if hasattr(bpy.data, "lamps"):
+    bpy.data.lamps.new("L", "SUN")
+else:
+    bpy.data.lights.new("L", "SUN").use_sphere
+hasattr(bpy.data, "own") and bpy.data.own
+"""
+
+
+def test_what_the_data_surely_lack_decides_which_way_is_taken(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = ["import bpy", *_statements(_OF_DATA)]
+    errors = [error for error, *_ in run_statements(tmp_path, lines) if error]
+    assert len(errors) == 2
+    found = rule_checker.check(_OF_DATA, rules=["unknown-attribute"])
+    assert [one.span.line for one in found] == [3, 7]
+
+
+def _statements(code: str) -> list[str]:
+    """The statements of a script behind its first line, each as it is written."""
+    return [ast.get_source_segment(code, node) or "" for node in ast.parse(code).body[1:]]

@@ -749,6 +749,12 @@ def test_a_list_of_items_tells_the_mode_of_the_property(kb: KnowledgeBase) -> No
     assert any("= 'FFMPEG' is taken only with media_type='VIDEO'." in note for note in answer.notes)
 
 
+def test_where_a_value_is_taken_is_said_in_words(kb: KnowledgeBase) -> None:
+    (note,) = (one for one in kb.query("socket.structure_type = 'DYNAMIC'").notes if "is taken only" in one)
+    assert note.endswith("taken only in a GeometryNodeTree, and there only by a menu, color, float, matrix, vector, "
+                         "boolean, integer or rotation node socket interface.")  # fmt: skip
+
+
 def test_what_became_an_operator_is_no_argument(kb: KnowledgeBase) -> None:
     notes = kb.query('keyword "use_auto_smooth" unrecognized').notes
     assert notes

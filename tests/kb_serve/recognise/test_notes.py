@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from contextlib import closing
 
 import pytest
+from other_versions import base_of
 
 from kb_build.symbols.paths import as_code
-from kb_serve.reader import Successor
+from kb_serve.reader import BaseReader, Successor
 from kb_serve.recognise.notes import Notes
-from kb_serve.recognise.removed.removed_symbols import RemovedSymbol
-
-if TYPE_CHECKING:
-    from kb_serve.reader import BaseReader
+from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 
 USE = Successor("bpy.types.A.b", "", "2.80", "")
 HOW = Successor("bpy.types.A.b", "Call it with True.", "4.0", "")
@@ -51,6 +49,36 @@ def test_a_removed_symbol_is_dated_and_replaced(reader: BaseReader, symbol: Remo
     assert note.startswith("`x` does not exist in Blender ")
     assert said in note
     assert ".." not in note
+
+
+@pytest.mark.blender
+@pytest.mark.parametrize(
+    ("path", "said"),
+    [
+        ("bpy.ops.sequencer.select_handle", "does not exist in Blender 3.4: new in 4.2 or a little before."),
+        (
+            'bpy.types.ShaderNodeBsdfPrincipled.inputs["Coat Weight"]',
+            "does not exist in Blender 3.4: new in 4.0.",
+        ),
+        ("bpy.types.NodeTree.interface", "does not exist in Blender 3.4: new in 4.0."),
+    ],
+)
+def test_what_is_newer_is_dated_as_far_as_it_is_known(path: str, said: str) -> None:
+    with closing(BaseReader(base_of("3.4"))) as older:
+        removed = RemovedSymbolLookup(older).of_path(path)
+        assert removed is not None
+        assert said in Notes(older).removed(removed)
+
+
+@pytest.mark.blender
+def test_what_a_build_was_made_without_is_not_called_new() -> None:
+    with closing(BaseReader(base_of("3.4"))) as older:
+        removed = RemovedSymbolLookup(older).of_path("bpy.ops.wm.alembic_import")
+        if removed is None:
+            pytest.skip("this Blender 3.4 is made with Alembic")
+        note = Notes(older).removed(removed)
+    assert "`bpy.app.build_options.alembic` is True" in note
+    assert "new in" not in note
 
 
 @pytest.mark.parametrize(

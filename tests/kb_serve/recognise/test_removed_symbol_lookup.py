@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from typing import TYPE_CHECKING
 
 import pytest
+from other_versions import base_of
 
 from kb_build.symbols.paths import plain_path, socket_node
+from kb_serve.reader import BaseReader
 from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
-    from kb_serve.reader import BaseReader
 
 T = "bpy.types."
 
@@ -40,6 +42,15 @@ def test_a_member_is_found_below_a_class_where_only_one_lost_it(removed: Removed
     # Cameras, armatures and more had it: the variable decides.
     assert removed.below(f"{T}ID", "draw_type") is None
     assert path_of(removed.below(f"{T}ID", "draw_type", "arm")) == f"{T}Armature.draw_type"
+
+
+@pytest.mark.blender
+def test_what_a_base_will_have_comes_before_what_a_former_name_of_the_class_had() -> None:
+    with closing(BaseReader(base_of("3.4"))) as reader:
+        lookup = RemovedSymbolLookup(reader)
+        assert path_of(lookup.of_member(f"{T}GeometryNodeTree", "interface")) == f"{T}NodeTree.interface"
+        # Each kind of modifier will have it, and has another class until then.
+        assert lookup.below(f"{T}Modifier", "use_random") is None
 
 
 def test_what_moved_to_a_base_class_is_not_gone(removed: RemovedSymbolLookup) -> None:

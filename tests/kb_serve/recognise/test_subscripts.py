@@ -5,17 +5,17 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
+from other_versions import base_of
 from told_by_blender import told_by_blender
 
 from kb_build.symbols.api_names import TYPES
+from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.reader import BaseReader
 from kb_serve.recognise.resolving.subscripts import CustomProperties
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
-
-    from kb_serve.knowledge_base import KnowledgeBase
 
 
 @pytest.mark.parametrize(
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
         'modifier["Socket_2"] = 5.0',
         'obj.modifiers["GeometryNodes"]["Input_2"] = 5.0',
         'mod["Socket_2"]',
+        'm["Socket_2"] = 2.0',
+        'whatever["Input_3_use_attribute"] = True',
         "how do I set a geometry nodes modifier input value from Python",
         "change the value of an input of a geometry nodes modifier from python",
         "How do I set a geometry nodes modifier's input?",
@@ -36,6 +38,25 @@ def test_inputs_of_a_geometry_nodes_modifier_are_set_by_identifier(kb: Knowledge
     assert 'modifier[modifier.node_group.interface.items_tree["Size"].identifier] = 5.0' in notes
     assert "A menu takes the number of an entry, which is not its index" in notes
     assert "has no" not in notes
+
+
+@pytest.mark.blender
+@pytest.mark.parametrize(
+    "query",
+    [
+        'm["Socket_2"] = 2.0',
+        'obj.modifiers["GeometryNodes"]["Input_2"] = 5.0',
+        'm.properties["Socket_2"] = 2.0',
+        "how do I set a geometry nodes modifier input value from Python",
+        "TypeError: bpy_struct[key] = val: id properties not supported for this type",
+        "TypeError: this type doesn't support IDProperties",
+    ],
+)
+def test_inputs_that_are_properties_are_told_as_such(query: str) -> None:
+    with KnowledgeBase(base_of("5.2")) as kb:
+        notes = "\n".join(kb.query(query).notes)
+    assert "`modifier.properties.inputs.Socket_2.value" in notes
+    assert "geometry-nodes modifiers take" not in notes
 
 
 @pytest.mark.parametrize(

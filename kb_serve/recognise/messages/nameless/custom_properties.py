@@ -4,15 +4,28 @@ from __future__ import annotations
 
 from kb_build.symbols.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
+from kb_serve.recognise.resolving.subscripts import PROPERTIES_OF_MODIFIER
 
-_NO_CUSTOM_PROPERTIES = (
+_TAKING = (
     "Only data-blocks (objects, scenes, materials …), bones and their collections, nodes, strips, view layers, "
-    "property groups, the metadata of assets and geometry-nodes modifiers take custom properties in brackets. "
+    "property groups"
+)
+_OPERATORS = (
     "Operators and the "
     'preferences of add-ons do not: their properties are attributes (`self.name`, `hasattr(self, "name")`, '
-    "`setattr(self, name, value)`). Nor do other modifiers, constraints or sockets: store the value on their object or "
-    "node."
+    "`setattr(self, name, value)`)."
 )
+_ELSEWHERE = "constraints or sockets: store the value on their object or node."
+_NO_CUSTOM_PROPERTIES = (
+    f"{_TAKING}, the metadata of assets and geometry-nodes modifiers take custom properties in brackets. {_OPERATORS} "
+    f"Nor do other modifiers, {_ELSEWHERE}"
+)
+_NOR_MODIFIERS = (
+    f"{_TAKING} and the metadata of assets take custom properties in brackets. A geometry-nodes modifier does not: its "
+    f"inputs are `modifier.properties.inputs.Socket_2.value`. {_OPERATORS} Nor do other modifiers, {_ELSEWHERE}"
+)
+_KEYS = (f"{T}bpy_struct.keys", f"{T}PropertyGroup")
+_UNSUPPORTED = "id properties not supported", "his type doesn't support IDProperties"
 _ONLY_DEFINED = (
     "A property that a class got by `size = bpy.props.IntProperty()` is only its definition. Write an annotation, "
     "`size: bpy.props.IntProperty()`, register the class, and read the value from an instance: `self.size` of an "
@@ -34,16 +47,11 @@ CUSTOM_PROPERTIES = (
         "the attribute (`scene.count = 3`). Custom properties of your own do take another type.",
         ("Group IDProperty", "existing 'Socket_"),
     ),
-    NamelessMessage(
-        ("id properties not supported",),
-        (f"{T}bpy_struct.keys", f"{T}PropertyGroup"),
-        _NO_CUSTOM_PROPERTIES,
+    *(
+        NamelessMessage((part,), _KEYS, _NO_CUSTOM_PROPERTIES, lacking=PROPERTIES_OF_MODIFIER)
+        for part in _UNSUPPORTED
     ),
-    NamelessMessage(
-        ("his type doesn't support IDProperties",),
-        (f"{T}bpy_struct.keys", f"{T}PropertyGroup"),
-        _NO_CUSTOM_PROPERTIES,
-    ),
+    *(NamelessMessage((part,), (PROPERTIES_OF_MODIFIER, *_KEYS), _NOR_MODIFIERS) for part in _UNSUPPORTED),
     NamelessMessage(
         ("'_PropertyDeferred' object is not subscriptable",),
         ("bpy.props._PropertyDeferred",),
