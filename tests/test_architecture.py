@@ -125,6 +125,7 @@ RULES = (
             "kb_build.symbols.paths",
             "kb_build.pages.definitions",
             "kb_build.symbols.records",
+            "kb_build.symbols.needs",
             "kb_build.symbols.taken",
             "kb_build.schema",
             "kb_build.index.analysis",

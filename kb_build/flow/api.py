@@ -44,6 +44,7 @@ from kb_build.symbols.api_names import COLLECTION, GROUPS, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.math_classes import math_class
 from kb_build.symbols.object_data import data_class
+from kb_build.symbols.paths import is_socket
 from kb_build.symbols.python_values import is_new_list
 
 if TYPE_CHECKING:
@@ -408,7 +409,8 @@ class Api:
                 label = symbol.label if symbol else ""
                 texts = {label.removesuffix(suffix) for suffix in ("", " Modifier", " Constraint")}
                 texts.add(CALLED.get(path.removeprefix(T), ""))
-                if symbol and (key := _KEY.search(symbol.reached)):  # the name that Blender gives
+                # The name that Blender gives; what nodes call their sockets tells no class of sockets.
+                if symbol and not is_socket(symbol.reached) and (key := _KEY.search(symbol.reached)):
                     texts.add(key["name"])
                 for own in texts - {""}:
                     labels.setdefault(own, []).append(path)

@@ -68,6 +68,7 @@ def test_what_an_expression_is(api: Api, code: str, cls: str) -> None:
         ("nt.nodes.new('ShaderNodeBsdfPrincipled')", "ShaderNodeBsdfPrincipled"),
         ("nt.nodes.new('ShaderNodeBsdfPrincipled').inputs['Base Color']", "NodeSocketColor"),
         ("nt.nodes.new(type='ShaderNodeMath').outputs[0]", "NodeSocketFloat"),
+        ("nt.nodes.new('NodeOfNoBlender').inputs['Scale']", "NodeSocket"),
         ("nt.nodes['Principled BSDF']", "ShaderNodeBsdfPrincipled"),
         ("bpy.data.node_groups.new('x', 'GeometryNodeTree')", "GeometryNodeTree"),
         ("ob.data.attributes.new('x', 'FLOAT_COLOR', 'POINT')", "FloatColorAttribute"),
