@@ -141,8 +141,8 @@ def _add_areas(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
             *([GIVEN + seen["given"]] if seen.get("given") else ()),
             *(ALSO + statement for statement in seen.get("also", ())),
         ]
-        if "needs" in seen:
-            row["needs"] = seen["needs"]
+        if needs := seen.get("needs"):  # nothing beside the area is not nothing at all
+            row["needs"] = needs
 
 
 def _add_refused(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:

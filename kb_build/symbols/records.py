@@ -248,9 +248,9 @@ class Symbol:
     ``identifier-when-shown`` of its identifier, which with ``identifier-never`` gives it in none of its node's modes.
 
     A pointer that is None on new things has None as its new value; a flag ``filled-by:CALL`` then names what was seen
-    to fill it, flags ``filled-on:THING`` the new things on which it leads to something. A flag ``needs:WORDS`` says
-    with what an operator can run, of all that was tried, where it is not in an empty scene. ``refusals`` are what a
-    function refused, of all that was tried.
+    to fill it, flags ``filled-on:THING`` the new things on which it leads to something. ``needs`` are what an operator
+    runs with, of all that was tried, beside an area if it wants one; None where it has no more to want, or that is not
+    known. ``refusals`` are what a function refused, of all that was tried.
     """
 
     path: str

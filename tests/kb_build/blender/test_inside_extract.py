@@ -29,7 +29,6 @@ from kb_build.symbols.records import (
     ALSO,
     ENDS_BEFORE,
     ENDS_WITHOUT,
-    NEEDS,
     NOT_ENOUGH,
     REFUSED_ALL,
     WITHOUT_ACTIVE,
@@ -876,12 +875,12 @@ def test_an_operator_says_what_it_wants(symbols: dict[str, Symbol], operator: st
 
 def kind_and_mode(operator: Symbol) -> tuple[str, str]:
     """The first type and mode of an active object that an operator is said to want; empty for none."""
-    needs = "".join(operator.flagged(NEEDS))
+    wants_active = operator.needs is not None and operator.needs.active in {"active", "selected"}
     types, modes = operator_active(operator)
     kind = "MESH" if types is None or types.takes("MESH") else types.names[0]
     tried = ("OBJECT", "EDIT", *modes.names) if modes else ()
     mode = next((mode for mode in tried if modes and modes.takes(mode)), "")
-    return (kind if needs.startswith("an active") else ""), mode
+    return (kind if wants_active else ""), mode
 
 
 def test_what_operators_are_said_to_want_in_areas_is_enough(
@@ -902,7 +901,7 @@ def test_what_operators_are_said_to_want_in_areas_is_enough(
 def test_areas_of_any_type_are_those_of_all(symbols: dict[str, Symbol], tmp_path: Path) -> None:
     anywhere = [path for path, symbol in symbols.items() if operator_areas(symbol) == ("any",)]
     types = sorted({kind for symbol in symbols.values() for kind in operator_areas(symbol)} - {"any"})
-    free = [path for path in anywhere if not symbols[path].flagged(NEEDS)]
+    free = [path for path in anywhere if symbols[path].needs is None]
     ((*missing,),) = ask_blender(ASK_AREAS, tmp_path, [["", "", types, [], free]])
     assert (len(types) > 12, len(free) > 20, missing) == (True, True, [])
 

@@ -23,7 +23,7 @@ from kb_build.symbols.records import (
     SETS_ALSO,
     WINDOWLESS,
 )
-from kb_build.symbols.taken import AT_TIMES
+from kb_build.symbols.taken import AT_TIMES, Setting, Taken
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -286,8 +286,8 @@ def test_an_item_of_a_mode_of_the_context_is_said_to_be_taken_in_it(
     items = {
         item.identifier: item.where for item in symbols["bpy.types.BrushTextureSlot.map_mode"].enum_items
     }
-    assert items["AREA_PLANE"] == "only with bpy.context.mode='SCULPT'"
-    assert items["TILED"] == ""
+    assert items["AREA_PLANE"] == Taken("only", (Setting("bpy.context.mode", ("SCULPT",)),))
+    assert items["TILED"] is None
     assign = "brush.texture_slot.map_mode = 'AREA_PLANE'"
     lines = ["import bpy", "brush = bpy.data.brushes.new('b')", assign]
     lines += ["bpy.ops.object.mode_set(mode='SCULPT')", assign]

@@ -10,7 +10,7 @@ import pytest
 
 from kb_build.live.values import compare_values, same_value, told_empty, told_value
 from kb_build.schema import pack, unpack
-from kb_build.symbols.records import EMPTY, NewValue, Symbol
+from kb_build.symbols.records import EMPTY, FILLED_AT_START, NewValue, Symbol
 from simworlds.sandbox.runtime import find_runtime
 
 if TYPE_CHECKING:
@@ -89,7 +89,8 @@ def test_what_is_wrong_is_found(built: Built, tmp_path: Path) -> None:
         change(body, "new_values", [{"value": None, "made": [], "when": "", "by": ""}], [])
         flags = ["readonly", "compared", "filled-by:"]
         made = flags[2] + "bpy.ops.object.forcefield_toggle()"
-        change(field, "flags", [*flags[:2], made], [*flags[:2], flags[2] + "bpy.ops.rigidbody.object_add()"])
+        known = [flags[0], FILLED_AT_START, flags[1]]
+        change(field, "flags", [*known, made], [*known, flags[2] + "bpy.ops.rigidbody.object_add()"])
         layers = "bpy.types.Scene.view_layers"
         change(layers, "flags", ["readonly"], ["readonly", EMPTY])
         change(keys, "flags", [*flags[:2], flags[2] + "obj.shape_key_add()"], flags[:2])
