@@ -79,14 +79,16 @@ def _in_area(path: str, area: str, also: Sequence[str]) -> str:
     return f"{'; '.join(f'`{line}`' for line in lines)}. Where there is no window, there is no area."
 
 
-def _active_given(needs: OperatorNeeds | None) -> str:
-    """Lines that make an object active, and enter a mode, before an area is given."""
-    if needs is None or needs.active not in {"active", "selected"}:
-        return ""
-    mode = needs.mode_to_enter
-    entered = f"`bpy.ops.object.mode_set(mode='{mode}')`; " if mode else ""
-    selected = f"`{_SELECTED}`; " if needs.active == "selected" else ""
-    return f"`{_ACTIVE}`; {selected}{entered}"
+def _made_active(needs: OperatorNeeds) -> list[str]:
+    """Lines that make an object active, and select it; none where it is not wanted."""
+    if needs.active not in {"active", "selected"}:
+        return []
+    return [f"`{_ACTIVE}`", *([f"`{_SELECTED}`"] if needs.active == "selected" else [])]
+
+
+def _entering(needs: OperatorNeeds) -> str:
+    """A line that enters a mode in which an operator runs; empty for any."""
+    return f"`bpy.ops.object.mode_set(mode='{needs.mode_to_enter}')`" if needs.mode_to_enter else ""
 
 
 def _giving(operator: Symbol) -> str:
@@ -95,15 +97,17 @@ def _giving(operator: Symbol) -> str:
     if member := operator_given(operator):
         given = f"`{_WITH}({member}={_THINGS.get(member, member)}): {path}({_ARGUMENTS.get(path, '')})`."
         return f"{given} {_INSTEAD.get(path, '')}".rstrip()
-    if areas := operator_areas(operator):
-        return _active_given(operator.needs) + _in_area(path, areas[0], operator_also(operator))
     needs = operator.needs
+    active = _made_active(needs) if needs else []
+    entered = _entering(needs) if needs else ""
+    if areas := operator_areas(operator):
+        before = [*active, *([entered] if active and entered else [])]
+        return "".join(f"{line}; " for line in before) + _in_area(path, areas[0], operator_also(operator))
     if needs is None or not needs.active:
         return ""
-    entered = f"`bpy.ops.object.mode_set(mode='{needs.mode_to_enter}')`" if needs.mode_to_enter else ""
-    if needs.active == "any":
+    if not active:  # any, or none
         return f"{entered} comes before." if entered else ""
-    given = f"`{_ACTIVE}`" + (f", `{_SELECTED}`" if needs.active == "selected" else "")
+    given = ", ".join(active)
     return f"{given}, then {entered}." if entered else f"{given} comes before."
 
 
