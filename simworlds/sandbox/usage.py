@@ -20,9 +20,9 @@ _LEAST_FREE = (
 _MOST_COUNTED = 2_000_000
 _CHECK_SECONDS = 0.25  # between two counts of the files
 _PAUSE = 10.0  # after a slow count, in its durations
+_QUICK_SECONDS = 0.02  # of work; waiting for a core makes no count a slow one
 _MUCH_SPACE, _MANY_FILES = 150_000_000, 10_000  # taken since the last count, for the next to come at once
 _LITTLE_SPACE = 5_000_000  # of which it does not matter who took it
-_QUICK_SECONDS = 0.02
 
 
 class UsageMonitor:
@@ -67,13 +67,15 @@ class UsageMonitor:
         due = started >= (self._next_at_end if at_end else self._next)
         if not due and not self._may_exceed(free):
             return None
+        worked = time.thread_time()
         with self._process.standing_still():
             moment = self._folders[-1].now()
             excess = self._excess_on_disk()
         if excess is None:
             self.last_within_limits = moment
         ended = time.monotonic()
-        self._next_at_end = ended + (_PAUSE * (ended - started) if ended - started > _QUICK_SECONDS else 0.0)
+        slow = time.thread_time() - worked > _QUICK_SECONDS
+        self._next_at_end = ended + (_PAUSE * (ended - started) if slow else 0.0)
         self._next = max(ended + _CHECK_SECONDS, self._next_at_end)
         return excess
 

@@ -6,19 +6,20 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import pytest
 
 from simworlds.sandbox import usage
-from simworlds.sandbox.hostile_ground import HostileGround
+from simworlds.sandbox.hostile_ground import DiskUsage, HostileGround
 from simworlds.sandbox.nameless_files import nameless_files
 from simworlds.sandbox.resource_limits import ResourceLimits
 from simworlds.sandbox.watched_process import WatchedProcess
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
+    from collections.abc import Callable, Generator
     from pathlib import Path
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="/proc is Linux's")
@@ -107,6 +108,32 @@ def test_many_new_files_are_noticed_in_the_pause_between_counts(
     for number in range(1000):
         (tmp_path / str(number)).touch()
     assert watch.excess() == "brought the run to more than 600 files"
+
+
+@pytest.mark.parametrize(
+    ("lasts", "then"),
+    [
+        pytest.param(time.monotonic, "brought the run to more than 600 files", id="that waits for a core"),
+        pytest.param(time.thread_time, None, id="of very many files"),
+    ],
+)
+def test_a_calls_end_is_passed_over_only_after_a_count_that_is_much_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, lasts: Callable[[], float], then: str | None
+) -> None:
+    class LongCounted(HostileGround):
+        def measure(self, at_most: int = 0) -> DiskUsage:
+            began = lasts()
+            while lasts() - began < 0.1:
+                if lasts is time.monotonic:
+                    time.sleep(0.01)
+            return super().measure(at_most)
+
+    monkeypatch.setattr(usage, "_PAUSE", 1e6)
+    watch = usage.UsageMonitor((LongCounted(tmp_path),), ResourceLimits(files=600))
+    assert watch.excess(at_end=True) is None
+    for number in range(1000):
+        (tmp_path / str(number)).touch()
+    assert watch.excess(at_end=True) == then
 
 
 def test_a_process_stands_still_only_meanwhile(tmp_path: Path) -> None:
