@@ -19,5 +19,5 @@ def first_term(word: str) -> str:
 
 @cache
 def _table() -> str:
-    source = files("corpora").joinpath("words", "everyday_words.txt")
+    source = files("corpora") / "words" / "everyday_words.txt"
     return source.read_text(encoding="utf-8") if source.is_file() else ""

@@ -27,7 +27,7 @@ def load_query_expansions(*, plain: bool = True) -> dict[str, str]:
     """The table of phrases for symbols, with the ``plain`` questions or without; {} where there is none."""
     table: dict[str, str] = {}
     for name in _FILES if plain else _FILES[:1]:
-        source = files("corpora").joinpath("words", name)
+        source = files("corpora") / "words" / name
         lines = source.read_text(encoding="utf-8").splitlines() if source.is_file() else []
         for topic, _, phrases in (line.partition(": ") for line in lines if not line.startswith("#")):
             if phrases:
