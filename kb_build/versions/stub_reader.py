@@ -53,7 +53,7 @@ def _module_name(folder: Path, file: Path) -> str:
 def _parse(file: Path) -> ast.Module:
     try:
         with catch_warnings():
-            simplefilter("ignore", SyntaxWarning)  # of their docstrings
+            simplefilter("ignore")  # of their docstrings: a SyntaxWarning, before Python 3.12 a deprecation
             return ast.parse(_ALIAS.sub(rb"\1 =", file.read_bytes()))
     except (SyntaxError, ValueError, OSError) as error:
         raise KBBuildError(f"{file} cannot be read as a stub: {error}") from error
