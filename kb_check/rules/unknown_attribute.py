@@ -41,7 +41,8 @@ from kb_check.rules.lacking import lacking_finding
 from kb_check.script import once_per_script
 from kb_check.shown_sockets import socket_classes
 from kb_check.tried import is_tried
-from kb_serve.recognise.names.elements import elsewhere
+from kb_serve.recognise.names.elements import Elsewhere, elsewhere
+from kb_serve.recognise.names.holders import by_what_holds_it
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -71,13 +72,24 @@ def _check(script: Script) -> Iterator[Finding]:
             level = "warning" if lost or _is_let_pass(row) else "error"
             if not lacking.removed and _is_of_other(script, row, owner, lacking):
                 level, lacking = "warning", _confused(script, row, owner, lacking)
-            elif not lacking.removed and (other := elsewhere(row.missing[0], row.value, script.names.reader)):
-                told = f"`{row.missing[0]}` has no `{row.value}`. {other.how}"
-                lacking = replace(lacking, message=told, instead=(other.path,), replacement="")
+            elif not lacking.removed and (others := _elsewhere(script, row, owner, lacking)):
+                told = f"`{row.missing[0]}` has no `{row.value}`. {' '.join(other.how for other in others)}"
+                instead = tuple(other.path for other in others)
+                lacking = replace(lacking, message=told, instead=instead, replacement="")
             yield lacking_finding(script, RULE.id, row, lacking, level)
     yield from _of_python(script)
     yield from _of_libraries(script)
     yield from _of_sockets(script)
+
+
+def _elsewhere(script: Script, row: Resolution, owner: str, lacking: Lacking) -> list[Elsewhere]:
+    """What does elsewhere what a thing or a collection is asked to do."""
+    reader = script.names.reader
+    if other := elsewhere(row.missing[0], row.value, reader):
+        return [other]
+    return (
+        [] if lacking.replacement or row.kind != "attribute" else by_what_holds_it(owner, row.value, reader)
+    )
 
 
 def _of_sockets(script: Script) -> Iterator[Finding]:

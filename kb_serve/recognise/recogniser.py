@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, tokens
 from kb_build.symbols.api_names import ID, TYPES
-from kb_build.symbols.paths import plain_path, socket_node
+from kb_build.symbols.paths import last_name, plain_path, socket_node
 from kb_serve.recognise.code.contexts import NO_OVERRIDE, OVERRIDE
 from kb_serve.recognise.code.expressions import Expressions
 from kb_serve.recognise.code.products import WITH_AT, Products
@@ -28,6 +28,7 @@ from kb_serve.recognise.messages.messages import Messages
 from kb_serve.recognise.names.addresses import ids_in_urls
 from kb_serve.recognise.names.corrections import Corrector, by_first_word, nearest, shortened
 from kb_serve.recognise.names.enum_values import EnumValues
+from kb_serve.recognise.names.holders import by_what_holds_it
 from kb_serve.recognise.names.members_within import members_within
 from kb_serve.recognise.names.operator_words import OperatorWords
 from kb_serve.recognise.names.said_otherwise import said_otherwise
@@ -189,9 +190,13 @@ class Recogniser:
 
     @staticmethod
     def _read_as(chain: Chain, recognition: Recognition) -> str:
-        """What a chain was read as, or else a match of its last name that no other was read as; empty for none."""
+        """What a chain was read as, or else a match of its last name that no other was read as; empty for none, and
+        where what it leads to surely lacks that name.
+        """
         if (path := recognition.readings.get(chain.source)) is not None:
             return path
+        if any(one.name == _name(chain) and one.sure for one in recognition.missing):
+            return ""
         end = f".{_name(chain)}"
         others = set(recognition.readings.values())
         found = (match.id for match in recognition.matches if match.sure >= _SURE and match.id not in others)
@@ -243,51 +248,73 @@ class Recogniser:
         return [owner] if entry and entry.kind != "module" else []
 
     def _explain_missing(self, recognition: Recognition) -> None:
-        """Adds similar members of the class that lacks a name, or the name on other classes, or the class."""
+        """Adds what is meant by the names that classes lack, but for those that were removed."""
         removed = {symbol.path.rpartition(".")[2] for symbol in recognition.removed}
         for missing in recognition.missing:
-            if missing.name in removed:
-                continue
-            for place, path in enumerate(self._operators.having(missing.owner, missing.name)):
-                recognition.add(path, 0.95 - 0.01 * place, SIMILAR)
-            otherwise = said_otherwise(missing, self._operators, self._reader)
-            names = self._reader.member_names(missing.owner) if missing.owner else []
-            similar = nearest(missing.name, names)
-            is_meant = (
-                (bool(similar) and similar[0][1] >= _SPELLED_ALIKE)
-                or f"active_{missing.name}" in names
-                or any(self._is_called(path, missing.name) for path in otherwise)
+            if missing.name not in removed:
+                self._explain_name(missing, recognition)
+
+    def _explain_name(self, missing: MissingName, recognition: Recognition) -> None:
+        """Adds similar members of the class that lacks a name, or the name on other classes, or the class."""
+        for place, path in enumerate(self._operators.having(missing.owner, missing.name)):
+            recognition.add(path, 0.95 - 0.01 * place, SIMILAR)
+        otherwise = said_otherwise(missing, self._operators, self._reader)
+        names = self._reader.member_names(missing.owner) if missing.owner else []
+        similar = nearest(missing.name, names)
+        is_spelled_alike = bool(similar) and similar[0][1] >= _SPELLED_ALIKE
+        if not is_spelled_alike and self._held(missing, otherwise, recognition):
+            return
+        is_meant = (
+            is_spelled_alike
+            or f"active_{missing.name}" in names
+            or any(self._is_called(path, missing.name) for path in otherwise)
+        )
+        if not is_meant and self._within(missing, recognition, on_new=bool(otherwise)):
+            return
+        for place, path in enumerate(otherwise):
+            sure = _OTHERWISE if self._is_called(path, missing.name) else _LABEL_ENDS
+            recognition.add(path, sure - 0.01 * place, SIMILAR)
+        if missing.assigned:  # an assignment means ``select_set``, not ``select_get``
+            similar.sort(
+                key=lambda row: (-row[1], not row[0].startswith("set_") and not row[0].endswith("_set"))
             )
-            if not is_meant and self._within(missing, recognition, on_new=bool(otherwise)):
-                continue
-            for place, path in enumerate(otherwise):
-                sure = _OTHERWISE if self._is_called(path, missing.name) else _LABEL_ENDS
-                recognition.add(path, sure - 0.01 * place, SIMILAR)
-            if missing.assigned:  # an assignment means ``select_set``, not ``select_get``
-                similar.sort(
-                    key=lambda row: (-row[1], not row[0].startswith("set_") and not row[0].endswith("_set"))
-                )
-            for place, (name, alike) in enumerate(similar):
-                if member := self._reader.member_of(missing.owner, name):
-                    recognition.add(member.path, 0.95 * alike - 0.01 * place, SIMILAR)
-            if not missing.owner or similar or otherwise:
-                continue
-            begun = by_first_word(missing.name, names) if missing.told else []
-            sure, begun = (
-                (_BEGINS_ALIKE, begun)
-                if begun or not missing.told
-                else (_SHORTENED, shortened(missing.name, names))
-            )
-            for place, name in enumerate(begun):
-                if member := self._reader.member_of(missing.owner, name):
-                    recognition.add(member.path, sure - 0.01 * place, SIMILAR)
-            if not self._elsewhere(missing, recognition):
-                recognition.add(missing.owner, _OWNER_ALONE, "owner")
+        for place, (name, alike) in enumerate(similar):
+            if member := self._reader.member_of(missing.owner, name):
+                recognition.add(member.path, 0.95 * alike - 0.01 * place, SIMILAR)
+        if missing.owner and not similar and not otherwise:
+            self._like_nothing(missing, names, recognition)
+
+    def _like_nothing(self, missing: MissingName, names: list[str], recognition: Recognition) -> None:
+        """Adds the members that begin with a name's first word or shorten it, and the name on other classes or the
+        class.
+        """
+        begun = by_first_word(missing.name, names) if missing.told else []
+        sure = _BEGINS_ALIKE
+        if not begun and missing.told:
+            sure, begun = _SHORTENED, shortened(missing.name, names)
+        for place, name in enumerate(begun):
+            if member := self._reader.member_of(missing.owner, name):
+                recognition.add(member.path, sure - 0.01 * place, SIMILAR)
+        if not self._elsewhere(missing, recognition):
+            recognition.add(missing.owner, _OWNER_ALONE, "owner")
 
     def _is_called(self, path: str, name: str) -> bool:
         """Whether something does what a name says, or is labelled so, rather than ends with it."""
         entry = self._reader.entry(path)
         return entry is not None and (entry.kind != "property" or key(entry.label) == key(name))
+
+    def _held(self, missing: MissingName, otherwise: list[str], recognition: Recognition) -> bool:
+        """Adds what holds such things and does what the name says, before the operator of that name; whether there is
+        any.
+        """
+        found = by_what_holds_it(missing.owner, missing.name, self._reader) if missing.told else []
+        for rank, (path, how) in enumerate(found):
+            recognition.add(path, _WITHIN - 0.01 * rank, "within")
+            recognition.notes.append(how)
+        for path in otherwise if found else ():
+            if last_name(path) == missing.name:
+                recognition.add(path, _OTHERWISE - 0.01 * len(found), SIMILAR)
+        return bool(found)
 
     def _within(self, missing: MissingName, recognition: Recognition, *, on_new: bool) -> bool:
         """Adds the name on what the class points to, ``overlay`` of a SpaceView3D; whether there is any. What all

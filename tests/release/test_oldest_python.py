@@ -45,7 +45,13 @@ how do I make a smoke simulation
 cloth
 subdivison surfce
 """
-_SCRIPT = "import bpy\nob = bpy.context.object\nob.select = True\nob.modifers\nbpy.ops.mesh.primitive_cube_add(radius=1)\n"
+_SCRIPT = """
+import bpy
+ob = bpy.context.object
+ob.select = True
+ob.modifers
+bpy.ops.mesh.primitive_cube_add(radius=1)
+"""
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +66,10 @@ def oldest(tmp_path_factory: pytest.TempPathFactory) -> Path:
     wheel, _ = build_twice(REPO, folder)
     python = folder / "env" / "bin" / "python"
     for words, lacking in (
-        (["venv", "--no-python-downloads", "--python", version[1], str(folder / "env")], "there is none here"),
+        (
+            ["venv", "--no-python-downloads", "--python", version[1], str(folder / "env")],
+            "there is none here",
+        ),
         (["pip", "install", "--python", str(python), str(wheel)], "what it needs could not be installed"),
     ):
         done = subprocess.run(

@@ -189,9 +189,14 @@ class BrokenExpressions:
             recognition.add(other.path, 0.96 - later, "expression")
 
     def _tell_of_elements(self, resolved: ResolvedChain, later: float, recognition: Recognition) -> None:
-        """Adds the member of that name which the elements have of a collection that lacks it."""
+        """Adds the member of that name which the elements have of a collection that lacks it, and that makes none by
+        another name.
+        """
         holder = self._reader.entry(resolved.symbols[-1])
         if holder is None or holder.type != "collection" or not resolved.missing.isidentifier():
+            return
+        own = self._reader.members(f"{TYPES}{holder.collection}") if holder.collection else {}
+        if resolved.missing in ADDING and not ADDING.isdisjoint(own):
             return
         of_other = resolved.owner == f"{TYPES}{holder.target}"  # an element was read, which lacks it
         if not of_other and (found := of_elements(holder, resolved.missing, self._reader)):

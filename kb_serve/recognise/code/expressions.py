@@ -30,6 +30,7 @@ from kb_serve.recognise.code.broken_expressions import (
 from kb_serve.recognise.code.loose_names import LooseNames
 from kb_serve.recognise.code.names_beside import NamesBeside, said_in_words
 from kb_serve.recognise.code.python_methods import note_on_method
+from kb_serve.recognise.names.holders import by_what_holds_it
 from kb_serve.recognise.names.said_otherwise import said_otherwise
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed.removed_symbols import for_reading
@@ -238,18 +239,27 @@ class Expressions:
         """
         if not resolved.complete or (_is_file_name(chain) and resolved.fit < LIKELY):
             return False
-        if broken and broken.fit >= CLEAR and resolved.fit < LIKELY:
-            missing = MissingName(broken.missing, broken.owner, called=chain.call is not None)
-            has_member = broken.steps_left < len(chain.steps)
-            if has_member:
-                return False
-            if len(chain.attributes) == 1 and said_otherwise(missing, self._operators, self._reader):
-                return False
+        if broken and self._lacks(chain, resolved, broken):
+            return False
         if resolved.keyed and resolved.fit >= CLEAR:
             return True
         if is_socket(resolved.symbols[-1]) and (broken is None or broken.fit < CLEAR):
             return True  # what is in brackets tells it, whatever the variable is called
         return resolved.fit >= 1.0 or (bool(chain.attributes) and resolved.fit >= LEAST)
+
+    def _lacks(self, chain: Chain, resolved: ResolvedChain, broken: ResolvedChain) -> bool:
+        """Whether it is rather what the variable is named after that lacks what is asked of it than another thing that
+        has it: it says so otherwise, or what holds such things does it.
+        """
+        is_only = len(chain.attributes) == 1
+        missing = MissingName(broken.missing, broken.owner, called=chain.call is not None)
+        if broken.fit >= CLEAR and resolved.fit < LIKELY:
+            has_member = broken.steps_left < len(chain.steps)
+            if has_member or (is_only and said_otherwise(missing, self._operators, self._reader)):
+                return True
+        # ``collection.remove(obj)``: much has such functions.
+        is_likelier = resolved.fit < CLEAR * broken.fit and broken.fit >= LIKELY
+        return is_only and is_likelier and bool(by_what_holds_it(broken.owner, broken.missing, self._reader))
 
     def _misspelt(self, chain: Chain, resolved: ResolvedChain) -> bool:
         """Whether a root is a misspelt class: ``PoimtLight`` is hardly a variable that holds a light."""

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 ADDING = frozenset(
     {"add", "append", "assign", "create", "extend", "insert", "link", "load", "new", "push", "resize"}
 )
-REMOVING = frozenset({"clear", "delete", "discard", "pop", "remove", "unlink"})
+REMOVING = frozenset({"clear", "delete", "destroy", "discard", "pop", "remove", "unlink"})
 
 
 class Elsewhere(NamedTuple):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import ID, OBJECT, STRUCT, TYPES
 from kb_build.symbols.flags import empty_when_new
+from kb_serve.recognise.names.elements import ADDING, REMOVING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,11 +31,14 @@ def members_within(owner: str, name: str, reader: BaseReader, *, on_new: bool = 
     """Where a member of exactly that name is, one step from a class; empty where that may be in many places.
 
     With ``on_new`` only on what new things have themselves, not on what is None there, nor further on. Only parts of
-    the thing count: not another object that it points to, nor the one of its elements that is active.
+    the thing count: not another object that it points to, nor the one of its elements that is active. What is done to
+    anything (``add``, ``remove``) is looked for on no part that every data-block has.
     """
     members = _members(owner, reader)
     held = {member.target for member in members if member.type == "collection"}
     pointers = [one for one in members if one.type == "pointer" and _is_part(one, owner, held, reader)]
+    if name in ADDING | REMOVING:
+        pointers = [one for one in pointers if one.owner != ID]
     if on_new:
         pointers = [one for one in pointers if not _is_none(one, reader)]
     found = {

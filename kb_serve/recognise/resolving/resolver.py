@@ -13,6 +13,7 @@ from kb_build.symbols.api_names import COLLECTION, GROUPS, NODE, OBJECT, OPERATO
 from kb_build.symbols.paths import is_socket
 from kb_build.symbols.python_values import METHODS, python_class
 from kb_serve.recognise.code.refusals import keywords, lacks_keyword, refuses
+from kb_serve.recognise.names.holders import by_what_holds_it
 from kb_serve.recognise.resolving.chain_starts import ChainStarts
 from kb_serve.recognise.resolving.chain_values import ChainValue, ChainValues
 from kb_serve.recognise.resolving.chains import ChainStep
@@ -246,18 +247,27 @@ class Resolver:
         if not value.cls and name in METHODS and self._has_method(value.symbol, name):
             yield replace(value, method=name)
             return
-        if value.cls.startswith(TYPES):
-            below = [
-                entry
-                for entry in self._reader.by_name(name)
-                if entry.kind != "socket" and self._reader.descends(entry.owner, value.cls)
-            ]
-            if value.symbol == _OBJECT_DATA:
-                below = [entry for entry in below if self._reader.is_object_data(entry.owner)] or below
-            for entry in self._owners.heaviest(below):
-                yield self._values.of(entry, entry.owner)
+        for entry in self._below(value, name):
+            yield self._values.of(entry, entry.owner)
         if value.cls == PROPERTIES_OF_OPERATORS:  # of an operator that the base does not have
             yield ChainValue(value.symbol)
+
+    def _below(self, value: ChainValue, name: str) -> Sequence[SymbolEntry]:
+        """The members of that name which classes below a value's have, likeliest first. That one kind has a function
+        by which things are mostly added or removed elsewhere says nothing of the others.
+        """
+        if not value.cls.startswith(TYPES):
+            return []
+        below = [
+            entry
+            for entry in self._reader.by_name(name)
+            if entry.kind != "socket" and self._reader.descends(entry.owner, value.cls)
+        ]
+        if below and by_what_holds_it(value.cls, name, self._reader):
+            return []
+        if value.symbol == _OBJECT_DATA:
+            below = [entry for entry in below if self._reader.is_object_data(entry.owner)] or below
+        return self._owners.heaviest(below)
 
     def _has_parameter(self, path: str, name: str) -> bool:
         symbol = self._reader.symbol(path)

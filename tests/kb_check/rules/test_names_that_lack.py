@@ -421,3 +421,18 @@ def test_what_the_script_writes_is_named_before_what_it_took_the_place_of(
 ) -> None:
     [finding] = rule_checker.check(f"import bpy\n{code}\n", rules=["unknown-socket", "unknown-keyword"])
     assert finding.message.startswith(f"{names}: ")
+
+
+def test_what_holds_a_thing_is_told_where_the_thing_is_asked_to_do_it(checker: Checker) -> None:
+    code = """
+        import bpy
+        ob = bpy.data.objects["Cube"]
+        for modifier in ob.modifiers:
+            modifier.remove()
+        bpy.context.scene.collection.append(ob)
+    """
+    removing, appending = checker.check(dedent(code))
+    assert ".modifiers.remove(modifier)" in removing.message
+    assert removing.instead == ("bpy.types.ObjectModifiers.remove",)
+    assert appending.instead == ("bpy.types.CollectionObjects.link", "bpy.types.CollectionChildren.link")
+    assert removing.fix is None
