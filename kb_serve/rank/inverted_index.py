@@ -75,7 +75,8 @@ class InvertedIndex:
     @cached_property
     def levels(self) -> tuple[Level, Level]:
         """Units and topics. Raises BaseUnreadable."""
-        units, topics = self._read_level(UNITS), self._read_level(TOPICS)
+        names: dict[str, str] = {}
+        units, topics = self._read_level(UNITS, names), self._read_level(TOPICS, names)
         if not _within(units.topics, -1, topics.count):
             raise self._reader.damaged("its index refers to topics that do not exist")
         return units, topics
@@ -128,7 +129,8 @@ class InvertedIndex:
         """How much a stem tells, by the units that have it; 0 for an unknown one."""
         return self.postings(stem).idf
 
-    def _read_level(self, level: int) -> Level:
+    def _read_level(self, level: int, names: dict[str, str]) -> Level:
+        """The documents of a level; equal ``names`` become one text, as a page stands for each of its sections."""
         sql = """SELECT count, refs, anchors, topics, chapters, explained, kinds, members FROM levels
             WHERE level = ?"""
         try:
@@ -137,8 +139,8 @@ class InvertedIndex:
             )
             read = Level(
                 count,
-                refs.split("\n") if count else [],
-                anchors.split("\n") if count else [],
+                [names.setdefault(ref, ref) for ref in refs.split("\n")] if count else [],
+                [names.setdefault(anchor, anchor) for anchor in anchors.split("\n")] if count else [],
                 np.frombuffer(topics, np.int32),
                 np.frombuffer(chapters, np.int32),
                 np.frombuffer(explained, np.int32),
