@@ -193,6 +193,7 @@ INDEXES = """
 CREATE INDEX symbols_owner ON symbols (owner, name);
 CREATE INDEX symbols_name ON symbols (name, kind);
 CREATE INDEX symbols_target ON symbols (target) WHERE target != '';
+CREATE INDEX symbols_collection ON symbols (collection) WHERE collection != '';
 CREATE INDEX symbols_base ON symbols (base) WHERE base != '';
 CREATE INDEX panel_conditions_gate ON panel_conditions (gate);
 CREATE INDEX removed_name ON removed (name);

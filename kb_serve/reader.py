@@ -11,7 +11,7 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from kb_build.schema import Mark, NoBase, open_read_only, unpack
-from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.api_names import COLLECTION, TYPES
 from kb_build.symbols.object_data import data_class
 from kb_build.symbols.records import Page, PanelCondition, Symbol, page_from_json, symbol_from_json
 from kb_serve.errors import BadQuery, BaseMissing, BaseUnreadable
@@ -291,8 +291,12 @@ class BaseReader:
         return next((entry for entry, owner in entries if entry and entry.owner == owner), None)
 
     def member_names(self, owner: str) -> list[str]:
-        """The names of a class's members, inherited ones included, or of a module's."""
+        """The names of what a class's instances have, inherited members included, or of a module's: a collection's are
+        its own and those of all collections, as it is no structure.
+        """
         owners = [ancestor.path for ancestor in self.lineage(owner)] or [owner]
+        if self.is_of_collection(owner):
+            owners = [owner, *(ancestor.path for ancestor in self.lineage(COLLECTION))]
         return list(dict.fromkeys(name for path in owners for name in self._own_names(path)))
 
     def _own_names(self, owner: str) -> list[str]:
@@ -374,9 +378,13 @@ class BaseReader:
             WHERE target = ? AND kind = 'property' AND type = 'collection' ORDER BY path"""
         return [SymbolEntry._make(row) for row in self.rows(sql, cls)]
 
+    def is_of_collection(self, cls: str) -> bool:
+        """Whether a class is that of collections, whose instances are no structures."""
+        return cls.startswith(TYPES) and bool(self.collections_of(cls.removeprefix(TYPES)))
+
     def collections_of(self, cls: str) -> list[str]:
         """Paths of the properties whose collections are of a class of their own, given by its name."""
-        sql = "SELECT path FROM symbols WHERE collection = ? AND kind = 'property' ORDER BY id"
+        sql = "SELECT path FROM symbols WHERE collection = ? AND collection != '' AND kind = 'property' ORDER BY id"
         return [row[0] for row in self.rows(sql, cls)]
 
     def enum_owners(self, key: str) -> list[tuple[str, str, str]]:

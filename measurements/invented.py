@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from measurements.retrieval import Query
     from measurements.setting import Setting
 
-SETS = ("invented", "invented_kept")
+SETS = ("invented", "invented_kept", "held", "held_kept")
 FEW = 5
 _NAMED = re.compile(r"`([^`]+)`")
 _FORMS = {"member": "a class and its member", "expression": "code", "error": "messages"}
@@ -31,7 +31,7 @@ _Told = tuple[list[str], list[str]]
 
 
 def measure(setting: Setting) -> ReportPart:
-    """Asks every query of both sets."""
+    """Asks every query of all sets."""
     say("invented: asking by names that no Blender has")
     sets = {name: read_queries(QUERIES / f"{name}.jsonl") for name in SETS}
     with KnowledgeBase(setting.base) as base:

@@ -42,7 +42,7 @@ from kb_check.script import once_per_script
 from kb_check.shown_sockets import socket_classes
 from kb_check.tried import is_tried
 from kb_serve.recognise.names.elements import Elsewhere, elsewhere
-from kb_serve.recognise.names.holders import by_what_holds_it
+from kb_serve.recognise.names.holders import by_what_holds_it, of_collection
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -87,9 +87,9 @@ def _elsewhere(script: Script, row: Resolution, owner: str, lacking: Lacking) ->
     reader = script.names.reader
     if other := elsewhere(row.missing[0], row.value, reader):
         return [other]
-    return (
-        [] if lacking.replacement or row.kind != "attribute" else by_what_holds_it(owner, row.value, reader)
-    )
+    if lacking.replacement or row.kind != "attribute":
+        return []
+    return of_collection(row.missing[0], row.value, reader) or by_what_holds_it(owner, row.value, reader)
 
 
 def _of_sockets(script: Script) -> Iterator[Finding]:

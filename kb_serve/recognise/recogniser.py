@@ -8,7 +8,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, tokens
-from kb_build.symbols.api_names import ID, TYPES
+from kb_build.symbols.api_names import ID, OPERATORS, TYPES
 from kb_build.symbols.paths import last_name, plain_path, socket_node
 from kb_serve.recognise.code.contexts import NO_OVERRIDE, OVERRIDE
 from kb_serve.recognise.code.expressions import Expressions
@@ -57,6 +57,7 @@ _WITHIN = 0.98  # how sure the very name is on a part of what lacks it
 _SPELLED_ALIKE = 0.9  # similarity from which on another name may be a slip of the fingers
 _MANY = 12
 _DESCRIBED = 0.85  # … what plain words describe
+_HELD_PERHAPS = 0.93  # … and what holds such things and does it, where little tells what lacks the name
 _OTHERWISE = 0.96  # what does or is labelled what a class is asked for by another name
 _LABEL_ENDS = 0.87  # … what has a label that ends with that name
 _SHORTENED = 0.92  # … what a word is short for
@@ -200,7 +201,9 @@ class Recogniser:
         end = f".{_name(chain)}"
         others = set(recognition.readings.values())
         found = (match.id for match in recognition.matches if match.sure >= _SURE and match.id not in others)
-        return next((path for path in found if path.endswith(end)), "")
+        # An operator is written behind its module, or alone: ``constraint.add_target`` is none of ``con.add_target()``.
+        ends = {True: f".{chain.dotted}", False: end}
+        return next((path for path in found if f".{path}".endswith(ends[path.startswith(OPERATORS)])), "")
 
     @staticmethod
     def _successor(chain: Chain, recognition: Recognition) -> str:
@@ -307,10 +310,10 @@ class Recogniser:
         """Adds what holds such things and does what the name says, before the operator of that name; whether there is
         any.
         """
-        found = by_what_holds_it(missing.owner, missing.name, self._reader) if missing.told else []
+        found = by_what_holds_it(missing.owner, missing.name, self._reader)
         for rank, (path, how) in enumerate(found):
-            recognition.add(path, _WITHIN - 0.01 * rank, "within")
-            recognition.notes.append(how)
+            recognition.add(path, (_WITHIN if missing.told else _HELD_PERHAPS) - 0.01 * rank, "within")
+            recognition.notes += [how] if missing.told else []
         for path in otherwise if found else ():
             if last_name(path) == missing.name:
                 recognition.add(path, _OTHERWISE - 0.01 * len(found), SIMILAR)

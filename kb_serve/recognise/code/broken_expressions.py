@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.unlisted import SOMETIMES
 from kb_serve.recognise.names.elements import ADDING, elsewhere, meant_by_key
+from kb_serve.recognise.names.holders import of_collection
 from kb_serve.recognise.names.members_within import of_elements
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.resolving.chain_starts import ROOTS
@@ -184,9 +185,11 @@ class BrokenExpressions:
 
     def _tell_elsewhere(self, resolved: ResolvedChain, later: float, recognition: Recognition) -> None:
         """Adds what does what a collection lacks a function for."""
-        if other := elsewhere(resolved.symbols[-1], resolved.missing, self._reader):
-            recognition.notes.append(other.how)
-            recognition.add(other.path, 0.96 - later, "expression")
+        path, name = resolved.symbols[-1], resolved.missing
+        other = elsewhere(path, name, self._reader)
+        for one in [other] if other else of_collection(path, name, self._reader):
+            recognition.notes.append(one.how)
+            recognition.add(one.path, 0.96 - later, "expression")
 
     def _tell_of_elements(self, resolved: ResolvedChain, later: float, recognition: Recognition) -> None:
         """Adds the member of that name which the elements have of a collection that lacks it, and that makes none by

@@ -10,9 +10,22 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
 
 ADDING = frozenset(
-    {"add", "append", "assign", "create", "extend", "insert", "link", "load", "new", "push", "resize"}
+    {
+        "add",
+        "append",
+        "assign",
+        "connect",
+        "create",
+        "extend",
+        "insert",
+        "link",
+        "load",
+        "new",
+        "push",
+        "resize",
+    }
 )
-REMOVING = frozenset({"clear", "delete", "destroy", "discard", "pop", "remove", "unlink"})
+REMOVING = frozenset({"clear", "delete", "destroy", "discard", "erase", "free", "pop", "remove", "unlink"})
 
 
 class Elsewhere(NamedTuple):
@@ -52,6 +65,19 @@ _WEIGHT_REMOVED = Elsewhere(
     f"{T}VertexGroup.remove",
     'The object\'s vertex groups remove vertices: `obj.vertex_groups["Group"].remove([vertex.index])`.',
 )
+_LINKED = Elsewhere(
+    f"{T}NodeLinks.new",
+    "The tree links sockets: `node_tree.links.new(from_node.outputs[0], to_node.inputs[0])`.",
+)
+_UNLINKED = Elsewhere(
+    f"{T}NodeLinks.remove",
+    "The tree removes links: `node_tree.links.remove(node.inputs[0].links[0])`.",
+)
+_GEOMETRY_REMOVED = Elsewhere(
+    "bmesh.ops.delete",
+    "A mesh loses parts in a bmesh: `bm = bmesh.new(); bm.from_mesh(mesh); bm.verts.ensure_lookup_table(); "
+    "bmesh.ops.delete(bm, geom=[bm.verts[0]], context='VERTS'); bm.to_mesh(mesh)`.",
+)
 _LAYER_COLLECTION_ADDED = Elsewhere(
     f"{T}CollectionChildren.link",
     "A layer shows the scene's collections: `scene.collection.children.link(collection)` adds one.",
@@ -75,6 +101,12 @@ ADDED_BY = {
     f"{T}Collection.all_objects": _TO_COLLECTION,
     f"{T}LayerCollection.children": _LAYER_COLLECTION_ADDED,
     f"{T}MeshVertex.groups": _WEIGHT_ADDED,
+    f"{T}NodeSocket.links": _LINKED,
+    f"{T}Text.lines": Elsewhere(f"{T}Text.write", 'The text gets lines: `text.write("line\\n")`.'),
+    f"{T}GreasePencilDrawing.strokes": Elsewhere(
+        f"{T}GreasePencilDrawing.add_strokes",
+        "The drawing makes strokes, each of so many points: `drawing.add_strokes([4])`.",
+    ),
 }
 # Collection → where elements are removed.
 REMOVED_BY = {
@@ -97,6 +129,11 @@ REMOVED_BY = {
     f"{T}ViewLayer.objects": _OBJECT_REMOVED,
     f"{T}Collection.all_objects": _OBJECT_REMOVED,
     f"{T}MeshVertex.groups": _WEIGHT_REMOVED,
+    f"{T}NodeSocket.links": _UNLINKED,
+    f"{T}Mesh.vertices": _GEOMETRY_REMOVED,
+    f"{T}Mesh.edges": _GEOMETRY_REMOVED,
+    f"{T}Mesh.polygons": _GEOMETRY_REMOVED,
+    f"{T}Mesh.loops": _GEOMETRY_REMOVED,
 }
 
 # Class → the collection that scripts mean by ``thing["name"]``, which is a custom property of the thing instead.

@@ -7,8 +7,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
-from kb_build.symbols.api_names import OPERATORS
+from kb_build.symbols.api_names import ID, OPERATORS
 from kb_build.symbols.flags import operator_given
+from kb_serve.recognise.names.elements import REMOVING
 from kb_serve.recognise.resolving.variables import variable_fit
 
 if TYPE_CHECKING:
@@ -20,8 +21,12 @@ if TYPE_CHECKING:
 
 _FEW = 3
 _MAKERS = ("new", "add", "append", "link", "load", "resize")
-_MAKING = frozenset({*_MAKERS, "create", "insert", "push"})
+_MAKING = frozenset({*_MAKERS, "assign", "connect", "create", "insert", "push"})
 _LOADERS, _LOADING = ("load", "new"), frozenset({"open", "read"})
+_REMOVERS = ("remove", "unlink", "pop", "clear")
+_EMPTYING = ("clear", *_REMOVERS)
+_COPYING = frozenset({"clone", "duplicate"})
+_ALIKE = {"delete": "remove", "insert": "add"}  # verbs that members are called by as well
 _MANY = 6  # more members than these whose labels end alike are not told apart
 _MOST_CASES = 8
 _NAMES_ANOTHER = frozenset({"between", "for", "from", "in", "of", "on", "per", "to", "with"})
@@ -37,13 +42,48 @@ def said_otherwise(missing: MissingName, operators: OperatorWords, reader: BaseR
         return _operators_called(owner.path, missing.name, reader)
     if owner is None or owner.kind != "class" or not words(missing.name):
         return []
-    wanted = _LOADERS if missing.name in _LOADING else _MAKERS if missing.name in _MAKING else ()
-    if makers := _having(owner.path, wanted, reader):
-        return makers
+    own = (
+        _having(owner.path, _wanted(missing.name), reader)
+        or _of_same_words(owner.path, missing.name, reader)
+        or _going_on(owner.path, missing.name, reader)
+    )
+    if own:
+        return own
     found = labelled(owner.path, missing.name, reader)
     if found or not missing.called:
         return found
-    return operators_on(owner.path, missing.name, operators, reader)
+    copy = [f"{ID}.copy"] if missing.name in _COPYING and reader.descends(owner.path, ID) else []
+    return [*operators_on(owner.path, missing.name, operators, reader), *copy]
+
+
+def _wanted(name: str) -> tuple[str, ...]:
+    """What does to the elements of a collection what a name says, by its usual names; empty for other names."""
+    verb, *what = words(name)
+    if what == ["all"] and verb in REMOVING:
+        return _EMPTYING
+    if what:
+        return ()
+    if verb in REMOVING:
+        return _REMOVERS
+    return _LOADERS if verb in _LOADING else _MAKERS if verb in _MAKING else ()
+
+
+def _of_same_words(owner: str, name: str, reader: BaseReader) -> list[str]:
+    """The function of a class with the words of a name in another order: ``driver_remove`` for ``delete_driver``."""
+    said = _plain_words(name)
+    own = [member for member in reader.member_names(owner) if len(said) > 1 and _plain_words(member) == said]
+    members = filter(None, (reader.member_of(owner, member) for member in own))
+    return [member.path for member in members if member.kind == "function"]
+
+
+def _going_on(owner: str, name: str, reader: BaseReader) -> list[str]:
+    """The functions of a class itself that say what is removed: ``clear_geometry``, who says ``clear``."""
+    members = reader.members(owner).values() if name in REMOVING else ()
+    return [one.path for one in members if one.kind == "function" and one.name.startswith(f"{name}_")]
+
+
+def _plain_words(name: str) -> frozenset[str]:
+    return frozenset(_ALIKE.get(word, word) for word in words(name))
 
 
 def _operators_called(module: str, name: str, reader: BaseReader) -> list[str]:
@@ -52,7 +92,7 @@ def _operators_called(module: str, name: str, reader: BaseReader) -> list[str]:
 
 
 def _having(owner: str, names: Iterable[str], reader: BaseReader) -> list[str]:
-    """The members of some names that a class has: what adds an element to a collection, however it is called."""
+    """The members of some names that a class has: what adds elements or removes them, however it is called."""
     members = reader.members(owner) if names else {}
     return [members[name].path for name in names if name in members]
 

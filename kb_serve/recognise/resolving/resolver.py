@@ -276,10 +276,10 @@ class Resolver:
     def _of_collection(self, value: ChainValue, name: str) -> SymbolEntry | None:
         """A member of a collection: of its own class, of all collections, or of those of property groups."""
         own = self._reader.member_of(value.container, name)
-        if own and own.owner != STRUCT:  # ``get`` of a collection is no struct's
+        if own and (own.owner != STRUCT or own.kind == "property"):  # it has none of a structure's functions
             return own
-        of_groups = self._reader.descends(value.cls, _GROUP) and self._reader.member_of(GROUPS, name)
-        return self._reader.member_of(COLLECTION, name) or of_groups or own
+        of_groups = self._reader.member_of(GROUPS, name) if self._reader.descends(value.cls, _GROUP) else None
+        return self._reader.member_of(COLLECTION, name) or of_groups
 
     def _has_method(self, path: str, name: str) -> bool:
         """Whether what a property or constant holds is one of Python's own values, with a method of that name."""
