@@ -31,7 +31,11 @@ _BROWSER = frozenset({"filemode", "display_type", "sort_method", "hide_props_reg
 
 
 def arguments(symbol: Symbol, asked: AskedOf) -> Iterator[AnswerBlock]:
-    """What an operator or function takes, without what is told already as ``asked`` for, and what it returns."""
+    """What an operator or function takes, without what is told already as ``asked`` for, and what it returns; before
+    that, where it ends Blender.
+    """
+    if lines := "\n".join(f"- {line}" for line in fatal_lines(symbol)):
+        yield AnswerBlock(f"**Crashes Blender, as was tried**\n{lines}", "crashes")
     aside = of_file_browser(symbol)
     if symbol.parameters:
         left_out = {*aside, *asked.told}
@@ -44,8 +48,6 @@ def arguments(symbol: Symbol, asked: AskedOf) -> Iterator[AnswerBlock]:
     if symbol.returns:
         lines = "\n".join(map(_parameter_line, symbol.returns))
         yield AnswerBlock(f"**Returns**{_kept_in(symbol)}\n{lines}", "returns")
-    if lines := "\n".join(f"- {line}" for line in fatal_lines(symbol)):
-        yield AnswerBlock(f"**Crashes Blender, as was tried**\n{lines}", "crashes")
     if lines := "\n".join(f"- {line}" for line in refusal_lines(symbol)):
         yield AnswerBlock(f"**Refused, of all that was tried**\n{lines}", "refused calls")
     for parameter in symbol.parameters:
