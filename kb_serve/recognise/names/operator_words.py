@@ -3,15 +3,36 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.index.analysis import words
+from kb_build.index.analysis import stem, words
 from kb_build.symbols.api_names import OPERATORS
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from kb_serve.reader import BaseReader
 
 _FEW = 3
+# Verbs that say the same of operators; of each the first stands for all.
+_VERBS = (("add", "create", "make", "new"), ("move", "translate"), ("open", "load", "read"))
+_SAME = {stem(word): stem(verbs[0]) for verbs in _VERBS for word in verbs}
+_SAYS_LITTLE = frozenset(map(stem, ("all", "by", "the")))  # where nothing is called so
+_OF_ALL = frozenset({stem("object")})
+_LONG = 4  # letters of a word that may stand at the end of another: ``file``, of ``mainfile``
+
+
+class _Words(NamedTuple):
+    """The stems of an operator's words and of its module's, and its words as they are."""
+
+    own: frozenset[str]
+    module: frozenset[str]
+    written: tuple[str, ...]
+
+    def has(self, word: str) -> bool:
+        """Whether a stem is among them, or at the end of one."""
+        is_end = len(word) >= _LONG and any(other.endswith(word) for other in self.written)
+        return word in self.own or word in self.module or is_end
 
 
 class OperatorWords:
@@ -21,16 +42,32 @@ class OperatorWords:
         self._reader = reader
 
     def having(self, owner: str, name: str) -> list[str]:
-        """The operators of other modules that have all words of an operator's name: ``export_scene.fbx`` for
-        ``wm.fbx_export``. None where too many have.
+        """The operators, of whatever module, that have all words of an operator's name: ``export_scene.fbx`` for
+        ``wm.fbx_export``, ``object.camera_add`` for ``camera.add``. Those with the fewest words besides, and that lack
+        the fewest of the module's; none where too many are alike.
         """
-        if not owner.startswith(OPERATORS):
+        if not f"{owner}.".startswith(OPERATORS):
             return []
-        said = set(words(name))
-        having = {path: own for path, own in self._words.items() if said <= own}
-        module = set(words(owner.removeprefix(OPERATORS)))
-        found = sorted(having, key=lambda path: (-len(module & having[path]), len(having[path])))
-        return found if said and len(found) <= _FEW else []
+        said = _stems(words(name))
+        # Of objects much is done by operators of other modules.
+        module = _stems(words(owner.removeprefix(OPERATORS.rstrip(".")))) - _OF_ALL
+        # One that is called so as a whole is nearer than one without the words that say little.
+        nearest = (self._nearest(meant, module) for meant in (said, said - _SAYS_LITTLE))
+        cost, found = min(nearest, key=lambda one: one[0])
+        weights = self._reader.weights(found)
+        found.sort(key=lambda path: (not path.startswith(f"{owner}."), -weights.get(path, 0.0)))
+        return found[:_FEW] if len(found) <= _FEW or not cost[0] else []
+
+    def _nearest(self, said: frozenset[str], module: frozenset[str]) -> tuple[tuple[int, int], list[str]]:
+        """How many words are too many or too few at best, how many of these too few, and the operators."""
+        costs: dict[str, tuple[int, int]] = {}
+        for path, own in self._words.items() if said else ():
+            if all(map(own.has, said)):
+                lacking = len(module - own.own - own.module)
+                costs[path] = lacking + len(own.own - said - module), lacking
+        best = min(costs.values(), default=(len(said | module), 0))
+        found = [path for path, cost in costs.items() if cost == best]
+        return best, found
 
     def beginning(self, name: str) -> list[str]:
         """The operators whose own names begin with the words of a name: ``ptcache.bake_all`` for ``bake``."""
@@ -43,6 +80,17 @@ class OperatorWords:
         return {path: words(path.rpartition(".")[2]) for (path,) in rows}
 
     @cached_property
-    def _words(self) -> dict[str, set[str]]:
-        """Those of the module's name as well."""
-        return {path: {*own, *words(path.split(".")[2])} for path, own in self._own_words.items()}
+    def _words(self) -> dict[str, _Words]:
+        return {
+            path: _Words(_stems(own), _stems(words(path.split(".")[2])), tuple(own))
+            for path, own in self._own_words.items()
+        }
+
+
+def same_operator_words(one: str, other: str) -> bool:
+    """Whether two names of operators have the same words, in whatever order: ``add_modifier``, ``modifier_add``."""
+    return _stems(words(one)) == _stems(words(other))
+
+
+def _stems(spoken: Iterable[str]) -> frozenset[str]:
+    return frozenset(_SAME.get(one, one) for one in map(stem, spoken))

@@ -10,6 +10,7 @@ from kb_build.index.analysis import key, words
 from kb_build.symbols.api_names import ID, OPERATORS
 from kb_build.symbols.flags import operator_given
 from kb_serve.recognise.names.elements import REMOVING
+from kb_serve.recognise.names.operator_words import same_operator_words
 from kb_serve.recognise.resolving.variables import variable_fit
 
 if TYPE_CHECKING:
@@ -87,8 +88,13 @@ def _plain_words(name: str) -> frozenset[str]:
 
 
 def _operators_called(module: str, name: str, reader: BaseReader) -> list[str]:
-    """The operators of a module whose label is a name: ``remove_doubles`` is Merge by Distance."""
-    return [entry.path for entry in reader.members(module).values() if key(entry.label) == key(name)][:_FEW]
+    """The operators of a module that have the words of a name in another order, and those whose label it is:
+    ``remove_doubles`` is Merge by Distance.
+    """
+    members = reader.members(module).values()
+    same = [entry.path for entry in members if same_operator_words(entry.name, name)]
+    labelled = [entry.path for entry in members if key(entry.label) == key(name)]
+    return list(dict.fromkeys((*same, *labelled)))[:_FEW]
 
 
 def _having(owner: str, names: Iterable[str], reader: BaseReader) -> list[str]:
