@@ -6,7 +6,6 @@ import tarfile
 from typing import TYPE_CHECKING
 
 import pytest
-from whole import IS_WHOLE
 
 from kb_build.pages.readers.html import read_html
 from kb_build.pages.readers.rst import read_rst
@@ -20,21 +19,19 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.corpora
 # Of the 2,000 HTML pages, so that the test takes a minute; `python -m measurements.page_forms` takes all.
 EVERY = 6
-# Of both forms, so that it takes seconds.
-CHAPTER = "physics"
-LEAST = 2_000 // EVERY if IS_WHOLE else 90
+LEAST = 2_000 // EVERY
 
 
 def unpack(archive: Path, to: Path, *, every: int = 1) -> Path:
-    """The archive's pages (or a share of them, or a chapter), and the front page; returns the folder of its index."""
+    """The archive's pages (or a share of them), and the front page; returns the folder of its index."""
     if not archive.is_file():
         pytest.skip(f"{archive.name} is not on this machine")
     count = 0
     with tarfile.open(archive, mode="r|xz") as files:
         for member in files:
             count += member.isfile()
-            is_taken = count % every == 0 if IS_WHOLE else f"/{CHAPTER}/" in member.name
-            if member.isfile() and (is_taken or member.name.rpartition("/")[2].startswith("index.")):
+            is_taken = count % every == 0 or member.name.rpartition("/")[2].startswith("index.")
+            if member.isfile() and is_taken:
                 files.extract(member, to, filter="data")
     return min(to.rglob("index.*"), key=lambda path: len(path.parts)).parent
 
@@ -48,11 +45,13 @@ def comparison(corpora: Path, tmp_path_factory: pytest.TempPathFactory) -> Reade
     return compare(read_rst(sources, source="manual", version="4.4"), pages)
 
 
+@pytest.mark.whole
 def test_titles_and_section_titles_agree_in_both_forms_of_the_manual(comparison: ReaderComparison) -> None:
     assert len(comparison.shared) > LEAST
     assert comparison.outline_share >= 0.98
 
 
+@pytest.mark.whole
 def test_texts_agree_in_both_forms_of_the_manual(comparison: ReaderComparison) -> None:
     assert comparison.similarity >= 0.99
     assert comparison.identical / len(comparison.shared) >= 0.93
