@@ -201,9 +201,13 @@ class Recogniser:
         end = f".{_name(chain)}"
         others = set(recognition.readings.values())
         found = (match.id for match in recognition.matches if match.sure >= _SURE and match.id not in others)
-        # An operator is written behind its module, or alone: ``constraint.add_target`` is none of ``con.add_target()``.
-        ends = {True: f".{chain.dotted}", False: end}
-        return next((path for path in found if f".{path}".endswith(ends[path.startswith(OPERATORS)])), "")
+        whole = f".{chain.dotted}"
+
+        def is_written(path: str) -> bool:
+            # An operator is written behind its module, or alone: ``con.add_target()`` is not ``constraint.add_target``.
+            return f".{path}".endswith(whole if path.startswith(OPERATORS) else end)
+
+        return next(filter(is_written, found), "")
 
     @staticmethod
     def _successor(chain: Chain, recognition: Recognition) -> str:
@@ -313,7 +317,8 @@ class Recogniser:
         found = by_what_holds_it(missing.owner, missing.name, self._reader)
         for rank, (path, how) in enumerate(found):
             recognition.add(path, (_WITHIN if missing.told else _HELD_PERHAPS) - 0.01 * rank, "within")
-            recognition.notes += [how] if missing.told else []
+            if missing.told:
+                recognition.notes.append(how)
         for path in otherwise if found else ():
             if last_name(path) == missing.name:
                 recognition.add(path, _OTHERWISE - 0.01 * len(found), SIMILAR)

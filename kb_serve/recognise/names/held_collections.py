@@ -32,24 +32,30 @@ def held_by(owner: str, reader: BaseReader, *, empty: bool = False) -> Iterator[
     has, nor, unless ``empty``, of a part that new things lack.
     """
     members = members_of(owner, reader)
-    yield from collections_among(members, "")
+    yield from _collections(members, "")
     for part in members:
-        is_part = part.type == "pointer" and part.is_read_only and bool(part.target)
-        if is_part and (empty or not _is_none(part, reader)):
-            yield from collections_among(members_of(f"{TYPES}{part.target}", reader), f"{part.name}.")
+        is_part = part.type == "pointer" and part.is_read_only and bool(part.target) and part.owner != ID
+        if is_part and (empty or not is_none_when_new(part, reader)):
+            yield from _collections(members_of(f"{TYPES}{part.target}", reader), f"{part.name}.")
 
 
 def members_of(cls: str, reader: BaseReader) -> list[SymbolEntry]:
-    """The members of a class and of its bases, but for what every data-block has."""
-    lineage = [entry.path for entry in reader.lineage(cls) if entry.path not in {ID, STRUCT}]
+    """The members of a class and of its bases, but for what everything has."""
+    lineage = [entry.path for entry in reader.lineage(cls) if entry.path != STRUCT]
     return [member for path in lineage for member in reader.members(path).values()]
 
 
-def collections_among(members: Iterable[SymbolEntry], before: str) -> Iterator[tuple[SymbolEntry, str]]:
+def is_none_when_new(pointer: SymbolEntry, reader: BaseReader) -> bool:
+    """Whether a pointer is None on new things."""
+    symbol = reader.symbol(pointer.path)
+    return symbol is not None and empty_when_new(symbol) is not None
+
+
+def _collections(members: Iterable[SymbolEntry], before: str) -> Iterator[tuple[SymbolEntry, str]]:
     """Those of some members that are collections, with how they are reached behind ``before``."""
     for one in members:
         is_collection = (one.type == "collection" and one.target) or one.type.startswith(BMESH_TYPES)
-        if (is_collection or one.path in ADDED_BY) and not one.is_deprecated:
+        if (is_collection or one.path in ADDED_BY) and not one.is_deprecated and one.owner != ID:
             yield one, before + one.name
 
 
@@ -58,11 +64,6 @@ def collections_with(cls: SymbolEntry, reader: BaseReader) -> list[SymbolEntry]:
     if not cls.path.startswith(BMESH_TYPES):
         return reader.collections_with(cls.name)
     return [one for one in reader.members(BMESH).values() if one.type.startswith(BMESH_TYPES)]
-
-
-def _is_none(pointer: SymbolEntry, reader: BaseReader) -> bool:
-    symbol = reader.symbol(pointer.path)
-    return symbol is not None and empty_when_new(symbol) is not None
 
 
 def class_of(collection: SymbolEntry) -> str:

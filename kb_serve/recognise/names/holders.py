@@ -11,20 +11,18 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import stem, stems_of, words
 from kb_build.symbols.api_names import STRUCT, TYPES
 from kb_build.symbols.paths import last_name
-from kb_serve.recognise.names.elements import ADDED_BY, REMOVED_BY, Elsewhere
+from kb_serve.recognise.names.elements import ADDED_BY, REMOVED_BY, REMOVING, Elsewhere
 from kb_serve.recognise.names.held_collections import (
     BMESH,
     BMESH_TYPES,
     Held,
     call_of,
     class_of,
-    collections_among,
     collections_with,
     first_function,
     function_of,
     held_by,
     held_with,
-    members_of,
     of_owner,
     takes,
 )
@@ -39,18 +37,7 @@ _ROOT = f"{TYPES}BlendData"
 _VALUES = "mathutils."
 _BMESH_OPS = "bmesh.ops."
 _TAKING_OUT = frozenset({"discard", "pop", "remove", "unlink"})
-_REMOVING = _TAKING_OUT | {
-    "clear",
-    "delete",
-    "destroy",
-    "detach",
-    "disconnect",
-    "dispose",
-    "erase",
-    "free",
-    "kill",
-    "purge",
-}
+_REMOVING = REMOVING | {"detach", "disconnect", "dispose", "kill", "purge"}
 _PUTTING = frozenset({"add", "append", "attach", "connect", "insert", "link", "push", "put"})
 _MAKING = frozenset({"create", "make", "new"})
 _ALL_AT_ONCE = "clear"  # empties a thing, unless it says of what
@@ -85,8 +72,9 @@ def by_what_holds_it(owner: str, name: str, reader: BaseReader) -> list[Elsewher
         is_verb = verb in _REMOVING | _PUTTING | _MAKING and not _says_the_same(owner, name, reader)
         found = _of_named(owner, verb, what, reader) if is_verb else []
     elif verb in _REMOVING and verb != _ALL_AT_ONCE:
-        about = _done(_of_the_verb(owner, verb, reader), _REMOVERS, REMOVED_BY, reader)
-        found = about or [*_told(_let_go(owner, verb, reader)), *_removed(owner, verb, reader)]
+        held = list(held_by(owner, reader))
+        about = _done(_of_the_verb(held, verb), _REMOVERS, REMOVED_BY, reader)
+        found = about or [*_let_go(held, verb, reader), *_removed(owner, verb, reader)]
     elif verb in _MAKING:
         found = _made(owner, reader)
     else:
@@ -123,9 +111,9 @@ def _of_a_value(name: str, reader: BaseReader) -> list[Elsewhere]:
     return [Elsewhere(function.path, how)] if function else []
 
 
-def _let_go(owner: str, verb: str, reader: BaseReader) -> list[Held]:
-    """What things that do not own what they hold let go of it by, where the verb may mean that."""
-    return _having(held_by(owner, reader), _OUT, reader) if verb in _TAKING_OUT else []
+def _let_go(held: Iterable[tuple[SymbolEntry, str]], verb: str, reader: BaseReader) -> list[Elsewhere]:
+    """How things that do not own what they hold let go of it, where the verb may mean that."""
+    return list(map(_told, _having(held, _OUT, reader))) if verb in _TAKING_OUT else []
 
 
 def _made(owner: str, reader: BaseReader) -> list[Elsewhere]:
@@ -137,20 +125,22 @@ def _made(owner: str, reader: BaseReader) -> list[Elsewhere]:
 
 def _put(owner: str, verb: str, reader: BaseReader) -> list[Elsewhere]:
     """How something is put into a thing: into what is called as the verb, or takes what there is, or makes it."""
-    if about := _done(_of_the_verb(owner, verb, reader), (*_TAKERS, *_MAKERS), ADDED_BY, reader):
+    held = list(held_by(owner, reader))
+    if about := _done(_of_the_verb(held, verb), (*_TAKERS, *_MAKERS), ADDED_BY, reader):
         return about
-    if taken := _told(_having(held_by(owner, reader), (*_TAKERS, *_IN), reader)):
-        return taken
-    made = _done(collections_among(members_of(owner, reader), ""), _MAKERS, ADDED_BY, reader)
+    if taken := _having(held, (*_TAKERS, *_IN), reader):
+        return list(map(_told, taken))
+    own = [(collection, access) for collection, access in held if "." not in access]
+    made = _done(own, _MAKERS, ADDED_BY, reader)
     weights = reader.weights([one.path for one in made])
     made.sort(key=lambda one: -weights.get(one.path, 0.0))
     return made if len(made) <= _FEW else []
 
 
-def _of_the_verb(owner: str, verb: str, reader: BaseReader) -> list[tuple[SymbolEntry, str]]:
-    """The collections of a thing that are called as what a verb does: ``links``, of who says ``link``."""
+def _of_the_verb(held: Iterable[tuple[SymbolEntry, str]], verb: str) -> list[tuple[SymbolEntry, str]]:
+    """Those of some collections that are called as what a verb does: ``links``, of who says ``link``."""
     said = stem(_ABOUT.get(verb, verb))
-    return [(one, access) for one, access in held_by(owner, reader) if stem(one.name) == said]
+    return [(one, access) for one, access in held if stem(one.name) == said]
 
 
 def _of_named(owner: str, verb: str, what: Sequence[str], reader: BaseReader) -> list[Elsewhere]:
@@ -161,7 +151,7 @@ def _of_named(owner: str, verb: str, what: Sequence[str], reader: BaseReader) ->
     if found := _done(_called(owner, what, reader), wanted, table, reader):
         return found
     kind = _OF_A_KIND + "_".join(what)
-    return [] if is_removed else _told(_having(held_by(owner, reader), (kind,), reader))
+    return [] if is_removed else list(map(_told, _having(held_by(owner, reader), (kind,), reader)))
 
 
 def _removed(owner: str, verb: str, reader: BaseReader) -> list[Elsewhere]:
@@ -172,11 +162,13 @@ def _removed(owner: str, verb: str, reader: BaseReader) -> list[Elsewhere]:
     others: list[Elsewhere] = []
     for cls in reader.lineage(owner):
         for collection in collections_with(cls, reader):
-            functions = [*(function_of(collection, name, reader) for name in _REMOVERS)]
-            functions.append(None if any(functions) else of_owner(collection, _REMOVERS, reader))
-            for function in filter(None, functions):
-                if takes(function, cls, reader):
-                    found.append(held_with(collection, collection.name, function, reader))
+            own = [*filter(None, (function_of(collection, name, reader) for name in _REMOVERS))]
+            functions = own or [*filter(None, [of_owner(collection, _REMOVERS, reader)])]
+            found += (
+                held_with(collection, collection.name, function, reader)
+                for function in functions
+                if takes(function, cls, reader)
+            )
             others += filter(None, (REMOVED_BY.get(collection.path),))
     weights = reader.weights([one.collection.path for one in found])
 
@@ -207,12 +199,12 @@ def _done(
     found: list[Elsewhere] = []
     for collection, access in held:
         if function := first_function(collection, wanted, reader):
-            found += _told([held_with(collection, access, function, reader)])
+            found.append(_told(held_with(collection, access, function, reader)))
         elif (other := table.get(collection.path)) and reader.entry(other.path):
             found.append(other)
         elif wanted[-1] in (*_MAKERS, *_IN):
-            found += _told(
-                held_with(collection, access, one, reader) for one in _kinds_made(collection, reader)
+            found += (
+                _told(held_with(collection, access, one, reader)) for one in _kinds_made(collection, reader)
             )
     return list(dict.fromkeys(found))
 
@@ -235,14 +227,12 @@ def _having(held: Iterable[tuple[SymbolEntry, str]], wanted: Sequence[str], read
     return found if len(found) <= _FEW else []
 
 
-def _told(found: Iterable[Held]) -> list[Elsewhere]:
-    told: list[Elsewhere] = []
-    for collection, access, function, call in found:
-        is_kind = function.name.startswith(_OF_A_KIND)
-        does = "makes one" if is_kind else _DOES.get(function.name, "removes one")
-        whole = f"bpy.data.{call}" if collection.owner == _ROOT else f".{call}"
-        told.append(Elsewhere(function.path, f"Its `.{access}` {does}: `{whole}` (`{function.path}`)."))
-    return told
+def _told(held: Held) -> Elsewhere:
+    """What a collection of a thing does."""
+    name, path = held.function.name, held.function.path
+    does = "makes one" if name.startswith(_OF_A_KIND) else _DOES.get(name, "removes one")
+    whole = f"bpy.data.{held.call}" if held.collection.owner == _ROOT else f".{held.call}"
+    return Elsewhere(path, f"Its `.{held.access}` {does}: `{whole}` (`{path}`).")
 
 
 def _called(owner: str, what: Sequence[str], reader: BaseReader) -> list[tuple[SymbolEntry, str]]:

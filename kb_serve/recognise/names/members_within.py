@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import ID, OBJECT, STRUCT, TYPES
-from kb_build.symbols.flags import empty_when_new
 from kb_serve.recognise.names.elements import ADDING, REMOVING
+from kb_serve.recognise.names.held_collections import is_none_when_new, members_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -34,13 +34,13 @@ def members_within(owner: str, name: str, reader: BaseReader, *, on_new: bool = 
     the thing count: not another object that it points to, nor the one of its elements that is active. What is done to
     anything (``add``, ``remove``) is looked for on no part that every data-block has.
     """
-    members = _members(owner, reader)
+    members = members_of(owner, reader)
     held = {member.target for member in members if member.type == "collection"}
     pointers = [one for one in members if one.type == "pointer" and _is_part(one, owner, held, reader)]
     if name in ADDING | REMOVING:
         pointers = [one for one in pointers if one.owner != ID]
     if on_new:
-        pointers = [one for one in pointers if not _is_none(one, reader)]
+        pointers = [one for one in pointers if not is_none_when_new(one, reader)]
     found = {
         member: f"Its `.{one.name}` has it: `.{one.name}.{name}` (`{member.path}`)."
         for one in pointers
@@ -50,7 +50,7 @@ def members_within(owner: str, name: str, reader: BaseReader, *, on_new: bool = 
         found.setdefault(member, note)
     if not found and not on_new:
         for one in pointers:
-            beyond = _members(f"{TYPES}{one.target}", reader) if one.is_read_only else []
+            beyond = members_of(f"{TYPES}{one.target}", reader) if one.is_read_only else []
             for member, note in _of_collections(beyond, name, reader, f".{one.name}"):
                 found.setdefault(member, note)
     if not found and (beside := _beside(owner, name, reader)):
@@ -67,12 +67,6 @@ def of_elements(collection: SymbolEntry, name: str, reader: BaseReader, before: 
     return Within(member, f"The elements of `{access}` have it: `{access}[0].{name}` (`{member.path}`).")
 
 
-def _members(cls: str, reader: BaseReader) -> list[SymbolEntry]:
-    """The members of a class and of its bases, but for what everything has."""
-    lineage = [entry.path for entry in reader.lineage(cls) if entry.path != STRUCT]
-    return [member for path in lineage for member in reader.members(path).values()]
-
-
 def _own_of(cls: str, name: str, reader: BaseReader) -> SymbolEntry | None:
     """A class's member of that name, if not everything has it."""
     member = reader.member_of(cls, name)
@@ -87,12 +81,6 @@ def _is_part(pointer: SymbolEntry, owner: str, held: set[str], reader: BaseReade
     return bool(pointer.target) and not (
         reader.descends(target, OBJECT) or reader.descends(owner, target) or pointer.target in held
     )
-
-
-def _is_none(pointer: SymbolEntry, reader: BaseReader) -> bool:
-    """Whether a pointer is None on new things."""
-    symbol = reader.symbol(pointer.path)
-    return symbol is not None and empty_when_new(symbol) is not None
 
 
 def _of_data(owner: str, name: str, reader: BaseReader) -> Iterator[Within]:

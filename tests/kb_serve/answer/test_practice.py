@@ -40,6 +40,12 @@ def said(reader: BaseReader, path: str, question: str = "") -> str:
     return "\n".join(Practice(reader).of(path, question or path))
 
 
+def end_of(code: str) -> int:
+    """With which exit code a Blender of its own ends that runs some code."""
+    words = [sys.executable, "-P", "-c", code]
+    return subprocess.run(words, check=False, capture_output=True, timeout=60).returncode
+
+
 # Drivers
 
 
@@ -287,15 +293,7 @@ def test_the_first_opacity_makes_it_0_elsewhere_and_new_strokes_begin_with_0() -
 def test_no_sizes_crash_blender(reader: BaseReader, path: str, data: str) -> None:
     assert "An empty list crashes Blender" in said(reader, TYPES + path)
     call = f"{data}.{path.partition('.')[2]}"
-    ends = [
-        subprocess.run(
-            [sys.executable, "-P", "-c", f"import bpy; {call}({sizes})"],
-            check=False,
-            capture_output=True,
-            timeout=60,
-        ).returncode
-        for sizes in ("[2]", "[]")
-    ]
+    ends = [end_of(f"import bpy; {call}({sizes})") for sizes in ("[2]", "[]")]
     assert ends[0] == 0
     assert ends[1] < 0 or ends[1] > 1  # 1 would be an error that Python raised
 
@@ -386,15 +384,8 @@ def test_what_is_said_to_crash_blender_does(reader: BaseReader, told: tuple[str,
     assert "crashes" in sentence
     assert words in sentence
     there, fatal, instead = _ENDS[told]
-    ends = [
-        subprocess.run(
-            [sys.executable, "-P", "-c", f"import bpy; scene = bpy.context.scene; {there}\n{statement}"],
-            check=False,
-            capture_output=True,
-            timeout=60,
-        ).returncode
-        for statement in (instead, fatal)
-    ]
+    before = f"import bpy; scene = bpy.context.scene; {there}"
+    ends = [end_of(f"{before}\n{statement}") for statement in (instead, fatal)]
     assert ends[0] == 0
     assert ends[1] < 0 or ends[1] > 1
 
