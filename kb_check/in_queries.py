@@ -35,7 +35,7 @@ _INSTANCES = frozenset({"self", "cls"})  # of the script's own classes
 # What is wrong in a piece of a script too, whatever stands around it. Names, keywords, sockets, products and the values
 # of properties are left out: of these an answer tells by itself, as it does of what other Blenders have.
 _RULES = (
-    "callback-signature", "given-callback", "list-attribute", "missing-argument", "no-custom-properties",
+    "callback-signature", "crash", "given-callback", "list-attribute", "missing-argument", "no-custom-properties",
     "not-subscriptable", "operator-idname", "positional-argument", "read-only", "refused-call", "refused-path",
     "refused-property", "refused-value", "unknown-node", "unknown-value", "wrong-count", "wrong-type",
 )  # fmt: skip

@@ -342,6 +342,15 @@ def asked_names(script: Script) -> frozenset[str]:
     return frozenset(found)
 
 
+@once_for_each
+def makers(script: Script, name: str) -> frozenset[str]:
+    """What is called for all that a name stands for; nothing where it stands for other values as well."""
+    values = bindings(script).get(name, [])
+    calls_only = all(isinstance(value, ast.Call) for value in values)
+    paths = {callee_path(script, value) for value in values if isinstance(value, ast.Call)}
+    return frozenset(paths) if calls_only else frozenset()
+
+
 @once_per_script
 def _handed_on(script: Script) -> frozenset[str]:
     """The names whose values are passed to functions that are neither the API's nor the script's own."""

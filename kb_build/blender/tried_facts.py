@@ -16,6 +16,9 @@ from kb_build.symbols.records import (
     EMPTY,
     EMPTY_AT_START,
     ENDS_BEFORE,
+    ENDS_LEFT_OUT,
+    ENDS_ON_NONE,
+    ENDS_WINDOWLESS,
     ENDS_WITHOUT,
     EVALUATED,
     FILLED_AT_START,
@@ -36,6 +39,7 @@ from kb_build.symbols.records import (
     SETS_ALSO,
     STOPS,
     UNBOUNDED,
+    UNSET_BY,
     WINDOWLESS,
 )
 from kb_build.symbols.taken import AT_TIMES, NEVER
@@ -162,11 +166,22 @@ def _add_argument_items(row: dict[str, Any] | None, asked: dict[str, Any]) -> No
 
 
 def _add_refusals(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
-    """Adds what a function refused, and without what it ends Blender."""
+    """Adds what a function refused."""
     if row is not None:
         row["refusals"] = refusals(seen["outcomes"])
-        if without := seen.get("ends_without"):
-            row["flags"] = [*row.get("flags", ()), ENDS_WITHOUT + without]
+
+
+def _add_crashes(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds with what a function or an assignment ends Blender."""
+    if row is not None:
+        row["flags"] = [
+            *row.get("flags", ()),
+            *([ENDS_WITHOUT + seen["without"]] if seen.get("without") else ()),
+            *(ENDS_ON_NONE + name for name in seen.get("none", ())),
+            *(ENDS_LEFT_OUT + name for name in seen.get("left_out", ())),
+            *([ENDS_WINDOWLESS] if seen.get("always") else ()),
+            *([UNSET_BY + seen["instead"]] if seen.get("instead") else ()),
+        ]
 
 
 def _add_undo_step(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
@@ -298,6 +313,7 @@ ADDED = {
     "operator_calls": _add_calls,
     "operator_refused": _add_refused,
     "refusals": _add_refusals,
+    "crashes": _add_crashes,
     "refused_default": _add_refused_default,
     "source_items": _add_source_items,
     "empty_collection": _add_empty,

@@ -27,6 +27,9 @@ from kb_build.symbols.records import (
     ANY,
     EMPTY,
     ENDS_BEFORE,
+    ENDS_LEFT_OUT,
+    ENDS_ON_NONE,
+    ENDS_WINDOWLESS,
     ENDS_WITHOUT,
     FACTORY,
     FILLED_ON,
@@ -41,6 +44,7 @@ from kb_build.symbols.records import (
     REFUSED_ALL,
     SHOWN_WHEN,
     STARTUP,
+    UNSET_BY,
     last_name,
 )
 
@@ -159,12 +163,24 @@ def area_text(types: Sequence[str]) -> str:
 
 
 def fatal_lines(symbol: Symbol) -> list[str]:
-    """When a call of a function or an operator crashes Blender, and what prevents it, a line each."""
-    unset = [f"while `{needed}` is None: set it before" for needed in symbol.flagged(ENDS_WITHOUT)]
-    return unset + [
-        "where there is no undo step yet, as in a Blender without a window: make one with "
-        f"`{call}`, and only then enter the mode"
-        for call in symbol.flagged(ENDS_BEFORE)
+    """When a call, or an assignment to a property, crashes Blender, and what prevents it, a line each."""
+    is_called = symbol.kind != "property"
+    index = "".join(f": `{name} = -1` unsets it" for name in symbol.flagged(UNSET_BY))
+    return [
+        *(f"while `{needed}` is None: set it before" for needed in symbol.flagged(ENDS_WITHOUT)),
+        *(
+            f"where `{name}` is None, as `get` may give it: test that before"
+            if is_called
+            else f"where it is set to None{index}"
+            for name in symbol.flagged(ENDS_ON_NONE)
+        ),
+        *(f"without `{name}`: give it" for name in symbol.flagged(ENDS_LEFT_OUT)),
+        *(["where there is no window"] if ENDS_WINDOWLESS in symbol.flags else ()),
+        *(
+            "where there is no undo step yet, as in a Blender without a window: make one with "
+            f"`{call}`, and only then enter the mode"
+            for call in symbol.flagged(ENDS_BEFORE)
+        ),
     ]
 
 

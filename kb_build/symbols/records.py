@@ -55,6 +55,13 @@ REFUSED_ALL = "refused-all"
 NOT_KNOWN = "poll-not-known"
 # How a flag begins that says what must not be None: Blender ends when the function is called.
 ENDS_WITHOUT = "ends-without:"
+# How flags begin that name an argument for which None ends Blender, or the pointer itself to which None is assigned;
+# and the argument without which a call does, although it may be left out.
+ENDS_ON_NONE, ENDS_LEFT_OUT = "ends-on-none:", "ends-left-out:"
+# The flag of a function that ends a Blender without a window.
+ENDS_WINDOWLESS = "ends-windowless"
+# How a flag begins that names the index of -1 by which a pointer comes to be None.
+UNSET_BY = "unset-by:"
 # How a flag begins that says what must be called before an operator's mode is entered: else Blender ends where there is
 # no undo step yet, as in one without a window.
 ENDS_BEFORE = "ends-before:"

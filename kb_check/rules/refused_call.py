@@ -10,20 +10,16 @@ spline = curve.splines.new("BEZIER")
 spline.points.add(3)  # reported: a Bézier spline has `bezier_points`
 mesh.attributes.new("weight", "FLOAT", "CURVE")  # reported: meshes have no such domain
 vector.length()  # reported: a property
-strip.modifiers.new("Curves", "CURVES")  # reported: ends Blender in a new file
 gpu.types.GPUShader(
     vertex, fragment
 )  # reported since 5.0: functions make it, such as `gpu.shader.create_from_info`
 bpy.utils.register_class(Grow())  # reported: Blender makes the instances of its classes, and takes Grow
 bpy.data.meshes.remove(ob.to_mesh())  # reported: ob.to_mesh_clear()
-bpy.ops.sculpt.face_sets_create(
-    mode="ALL"
-)  # reported without bpy.ops.ed.undo_push(): ends Blender without a window
 repeat_input.pair_with_output(simulation_output)  # reported: of another zone
 ```
 
-What returns None instead of raising an error is a warning, and so is what ends Blender in a new file, or without a
-window. Not reported: what depends on the mode (see not-in-edit-mode).
+What returns None instead of raising an error is a warning. Not reported: what depends on the mode (see
+not-in-edit-mode), and what crashes Blender (see crash).
 """
 
 from __future__ import annotations
@@ -38,24 +34,17 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.lines import with_article
 from kb_build.symbols.object_data import OBJECT_DATA
 from kb_build.symbols.paths import last_name
-from kb_build.symbols.records import ENDS_BEFORE, ENDS_WITHOUT, PAIRS
+from kb_build.symbols.records import PAIRS
 from kb_check.calls import CallSite, calls, calls_by_node
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.literals import number
-from kb_check.made_here import (
-    OBJECTS_NEW,
-    bindings,
-    called_operators,
-    callee_path,
-    is_named_before,
-    knows_all,
-)
+from kb_check.made_here import OBJECTS_NEW, bindings, callee_path, makers
 from kb_check.node_trees import tree_of
 from kb_check.own_classes import own_classes
 from kb_check.removed import OUTSIDE_MAIN
 from kb_check.repeated_calls import follows
 from kb_check.rule import Rule
-from kb_check.script import once_for_each, once_per_script
+from kb_check.script import once_per_script
 from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
@@ -73,7 +62,6 @@ _SIGNED = frozenset({"bmesh.types", "gpu.types", "idprop.types", "imbuf.types"})
 _REGISTERING = frozenset({"bpy.utils.register_class", "bpy.utils.unregister_class"})
 _NOT_AFTER = {"any": "a second time", "other": "after another", "same": "a second time"}
 _FIRST_OF_ZONE, _SECOND_OF_ZONE = "Input", "Output"
-_ENTERING = frozenset({"bpy.ops.object.mode_set", "bpy.ops.sculpt.sculptmode_toggle"})
 _REMOVES_DATA = re.compile(r"bpy\.types\.BlendData\w+\.remove")
 
 
@@ -84,8 +72,6 @@ def _check(script: Script) -> Iterator[Finding]:
     unknown = {row.node for row in script.missing("keyword")}
     earlier: dict[tuple[str, str, str], CallSite] = {}
     for call in calls(script):
-        yield from _ending(script, call)
-        yield from _ending_without_step(script, call)
         yield from _removing_of_object(script, call)
         yield from _mispaired(script, call)
         refusals = call.callee.symbol.refusals
@@ -115,63 +101,6 @@ def _check(script: Script) -> Iterator[Finding]:
                     yield _finding(script, call, refusal, f"{word} {with_article(kind)}")
             elif refusal.values and refusal.message:
                 yield _finding(script, call, refusal, "")
-
-
-def _ending(script: Script, call: CallSite) -> Iterator[Finding]:
-    """A call on what the script made that ends Blender while something is None that the script never sets."""
-    path, function = call.callee.symbol.path, call.node.func
-    for needed in call.callee.symbol.flagged(ENDS_WITHOUT):
-        owner = function.value if isinstance(function, ast.Attribute) else None
-        if (
-            isinstance(owner, ast.Attribute)
-            and knows_all(script)
-            and _is_made(script, owner.value)
-            and not is_named_before(script, last_name(needed), call.node)
-        ):
-            yield Finding(
-                RULE.id, "warning", script.span(call.node),
-                f"`{path}` ends Blender while `{needed}` is None, as it is in a new file: set it before.", path,
-            )  # fmt: skip
-
-
-def _ending_without_step(script: Script, call: CallSite) -> Iterator[Finding]:
-    """An operator that ends a Blender without a window, where the script enters its mode and makes no undo step."""
-    path = call.callee.symbol.path
-    for before in call.callee.symbol.flagged(ENDS_BEFORE):
-        if (
-            not _ENTERING.isdisjoint(called_operators(script))
-            and knows_all(script)
-            and not _waits_for_people(script)
-            and not is_named_before(script, last_name(before.partition("(")[0]), call.node)
-        ):
-            yield Finding(
-                RULE.id, "warning", script.span(call.node),
-                f"`{path}` ends a Blender without a window while there is no undo step: call `{before}` before the "
-                "mode is entered.", path,
-            )  # fmt: skip
-
-
-@once_per_script
-def _waits_for_people(script: Script) -> bool:
-    """Whether a script registers what people call, who have a window."""
-    return any(node.name == "register" for node in script.all(ast.FunctionDef)) or bool(
-        script.own_identifiers
-    )
-
-
-def _is_made(script: Script, owner: ast.expr) -> bool:
-    """Whether all that a name stands for was made by the script: ``strips.new_effect(…)``."""
-    makers = _makers(script, owner.id) if isinstance(owner, ast.Name) else frozenset[str]()
-    return bool(makers) and all(last_name(path)[:3] == "new" for path in makers)
-
-
-@once_for_each
-def _makers(script: Script, name: str) -> frozenset[str]:
-    """What is called for all that a name stands for; nothing where it stands for other values as well."""
-    values = bindings(script).get(name, [])
-    calls_only = all(isinstance(value, ast.Call) for value in values)
-    paths = {callee_path(script, value) for value in values if isinstance(value, ast.Call)}
-    return frozenset(paths) if calls_only else frozenset()
 
 
 def _called_classes(script: Script) -> Iterator[Finding]:
@@ -257,12 +186,12 @@ def _removing_of_object(script: Script, call: CallSite) -> Iterator[Finding]:
     given = call.node.args[0] if _REMOVES_DATA.fullmatch(path) and call.node.args else None
     match given:
         case ast.Name(id=name):
-            made, makers = bindings(script).get(name, []), _makers(script, name)
+            made, made_by = bindings(script).get(name, []), makers(script, name)
         case ast.Call():
-            made, makers = [given], frozenset({callee_path(script, given)})
+            made, made_by = [given], frozenset({callee_path(script, given)})
         case _:
             return
-    maker = next(iter(makers)) if len(makers) == 1 else ""
+    maker = next(iter(made_by)) if len(made_by) == 1 else ""
     clearing = OUTSIDE_MAIN.get(maker, "")
     if not clearing or script.api.symbols.symbol(clearing) is None or is_tried(script, call.node):
         return

@@ -81,14 +81,6 @@ _NO_TIMERS = (
     "Timers run between the events of a Blender with a window. Without one (`--background`, or `import bpy` in another "
     "Python) none ever runs: call the function yourself there."
 )
-_UNSEQUENCED = (
-    "It crashes Blender 5.1 while `bpy.context.workspace.sequencer_scene` is None, as in a new file: set that to the "
-    "strip's scene before."
-)
-_NOT_UNSET = "Assigning None crashes Blender 5.1: `active_index = -1` unsets it."
-_NOT_OF_NONE = "Given None it crashes Blender 5.1, so test what `get()` gives first."
-_WANTS_PREFIX = "Without `prefix` it crashes Blender 5.1: give all three arguments."
-_WANTS_WINDOW = "It crashes a Blender 5.1 without a window: {} does what a script needs."
 _WANTS_MATERIAL = "'MATERIAL' crashes Blender 5.1 as long as the object has no material: give it one before."
 _NO_SIZES = "An empty list crashes Blender: `if sizes: data.add_{}(sizes)`. Each size is at least 1."
 _NO_RETIMING = (
@@ -212,24 +204,6 @@ ADVICE: tuple[Advice, ...] = (
         explained=_STYLE,
     ),
     Advice(_EVERY_POINT, frozenset(f"{_STROKE}Point{name}" for name in ("", ".opacity", ".radius"))),
-    Advice(
-        _UNSEQUENCED,
-        _of("StripModifiers.clear", "StripModifiers.remove"),
-        needs=f"{TYPES}WorkSpace.sequencer_scene",
-    ),
-    Advice(
-        _NOT_UNSET,
-        _of(
-            "VertexGroups.active",
-            *(f"AttributeGroup{kind}.active" for kind in ("Curves", "GreasePencil", "Mesh", "PointCloud")),
-        ),
-    ),
-    Advice(
-        _NOT_OF_NONE, _of("BoneCollections.remove", "CollectionChildren.unlink", "CollectionObjects.unlink")
-    ),
-    Advice(_WANTS_PREFIX, _of("AnimData.fix_paths_rename_all")),
-    Advice(_WANTS_WINDOW.format("`image.update()`"), _of("Image.gl_load", "Image.gl_touch")),
-    Advice(_WANTS_WINDOW.format("`bpy.context.view_layer.update()`"), _of("RegionView3D.update")),
     Advice(_WANTS_MATERIAL, _of("GreasePencilOffsetModifier.offset_mode")),
     Advice(_NO_SIZES.format("strokes"), _of("GreasePencilDrawing.add_strokes")),
     Advice(_NO_SIZES.format("curves"), _of("Curves.add_curves")),

@@ -8,7 +8,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.flags import never_taken
-from kb_build.symbols.lines import SET, fatal_lines, literal, refusal_lines, said_taken, taken_where
+from kb_build.symbols.lines import SET, literal, refusal_lines, said_taken, taken_where
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.enum_items import item_lines
 from kb_serve.answer.property_facts import UNITS, range_text
@@ -31,11 +31,7 @@ _BROWSER = frozenset({"filemode", "display_type", "sort_method", "hide_props_reg
 
 
 def arguments(symbol: Symbol, asked: AskedOf) -> Iterator[AnswerBlock]:
-    """What an operator or function takes, without what is told already as ``asked`` for, and what it returns; before
-    that, where it ends Blender.
-    """
-    if lines := "\n".join(f"- {line}" for line in fatal_lines(symbol)):
-        yield AnswerBlock(f"**Crashes Blender, as was tried**\n{lines}", "crashes")
+    """What an operator or function takes, without what is told already as ``asked`` for, and what it returns."""
     aside = of_file_browser(symbol)
     if symbol.parameters:
         left_out = {*aside, *asked.told}

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import SIDES, STRUCT, TYPES
 from kb_build.symbols.flags import is_stand_in, operator_areas, operator_given
-from kb_build.symbols.lines import area_text, mode_needed, poll_line, version_meant, written
+from kb_build.symbols.lines import area_text, fatal_lines, mode_needed, poll_line, version_meant, written
 from kb_build.symbols.records import BARE_DATA, CALLS, PAIRS
 from kb_serve.answer.arguments import argument_lines, arguments, operator_call
 from kb_serve.answer.asked_values import ASKED_NOTHING
@@ -81,6 +81,8 @@ class MarkdownRenderer:
         What is ``asked`` of it comes before the rest, or alone.
         """
         yield AnswerBlock(self._head(symbol), "description")
+        if lines := "\n".join(f"- {line}" for line in fatal_lines(symbol)):
+            yield AnswerBlock(f"**Crashes Blender, as was tried**\n{lines}", "crashes")
         used = AnswerBlock(
             use_text(symbol.path, reached_as(symbol, self.reader), self.reader), "a use in Blender's scripts"
         )

@@ -14,6 +14,10 @@ from .wire import Writer
 WORK_SECONDS = 5
 # Until work that waits for something is ended.
 SECONDS = 60
+# The same where it only matters whether it crashes.
+MOMENT = 3
+# What ends a process that crashes.
+FAULTS = frozenset({signal.SIGSEGV, signal.SIGBUS, signal.SIGFPE, signal.SIGILL, signal.SIGABRT})
 
 
 def can_work_apart():
@@ -32,19 +36,30 @@ def forked(work):
     return process
 
 
-def apart(work):
-    """Whether work in a process of its own, a copy of this one, comes to its end and gives something true."""
+def status_of(work, seconds):
+    """The status of a process of its own, a copy of this one, that does work and is ended after some time."""
 
     def limited():
-        signal.setitimer(signal.ITIMER_PROF, WORK_SECONDS)
-        signal.alarm(SECONDS)
+        signal.setitimer(signal.ITIMER_PROF, min(seconds, WORK_SECONDS))
+        signal.alarm(seconds)
         return work()
 
-    return os.waitpid(forked(limited), 0)[1] == 0
+    return os.waitpid(forked(limited), 0)[1]
 
 
-def sent_apart(work):
-    """(whether it came to its end, what it sent) of work in a process of its own.
+def apart(work):
+    """Whether work in a process of its own comes to its end and gives something true."""
+    return status_of(work, SECONDS) == 0
+
+
+def crashes(work):
+    """Whether work crashes a process of its own. One that comes to no end does not."""
+    status = status_of(work, MOMENT)
+    return os.WIFSIGNALED(status) and os.WTERMSIG(status) in FAULTS
+
+
+def sent_apart(work, seconds=SECONDS):
+    """(whether it came to its end, what it sent) of work in a process of its own, which is ended after some time.
 
     ``work`` is given what it sends rows with; what was sent before Blender ended is there.
     """
@@ -58,7 +73,7 @@ def sent_apart(work):
             work(send)
             return True
 
-        ended = apart(sending)
+        ended = status_of(sending, seconds) == 0
         file.seek(0)
         return ended, [json.loads(line) for line in file]
 

@@ -18,6 +18,7 @@ import bpy
 from . import (
     addon_names,
     context,
+    crashes,
     given_nothing,
     left_out,
     modules,
@@ -106,13 +107,14 @@ def start_beside(_write, found):
             windowless.find_all(write)
 
         found["refusals"] = Beside("refusals", tried)
+        found["crashes"] = Beside("crashes", lambda write: crashes.find_all(write, observer))
         found["addons"] = Beside("addons", addon_names.write_all)
         found["needs"] = Beside("needs", lambda write: operator_needs.find_alone(write, skipped))
 
 
 def write_begun(write, found):
     """What was begun there."""
-    for step in ("refusals", "addons"):
+    for step in ("refusals", "crashes", "addons"):
         if step in found:
             found[step].into(write)
 

@@ -15,11 +15,9 @@ import bpy
 
 from .apart import apart, sent_apart
 from .instances.making import (
-    SEQUENCER_SCENE,
     activate,
     called,
     choices,
-    no_sequencer_scene,
     object_of,
     scratch_scene,
 )
@@ -177,19 +175,6 @@ def is_taken_in_edit_mode(struct, owner, function, arguments):
         bpy.data.objects.remove(obj)
 
 
-def ends_unset(owner, function, arguments):
-    """Whether a call ends Blender while there is no scene for the sequencer."""
-    if getattr(bpy.context.workspace, "sequencer_scene", None) is None:
-        return False
-
-    def work():
-        no_sequencer_scene()
-        refusal(owner, function, arguments)
-        return True
-
-    return not apart(work)
-
-
 def other_arguments(arguments, given):
     """The same choices with other names and numbers."""
     others = {str: "another", float: NUMBER + 1.0, int: NUMBER + 1}
@@ -205,7 +190,6 @@ class Trial:
         self.send = send
         self.skipped = skipped
         self.tried = set()
-        self.unset = set()
         self.taken = {}  # function → the arguments of a call with another choice that was taken
         self.things = []
         self.modes = {}
@@ -243,12 +227,7 @@ class Trial:
             mode = "" if given else self.mode(message, struct, owner, function, arguments)
             yield {"message": message, "given": given, "mode": mode}
         elif message is not None:
-            row = {"message": ""}
-            if function not in self.unset:
-                self.unset.add(function)
-                if ends_unset(owner, function, arguments):
-                    row["ends_without"] = SEQUENCER_SCENE
-            yield row
+            yield {"message": ""}
             # The next one that is added may move it elsewhere in memory.
             place = next((place for place, one in enumerate(owner) if one == made[0]), None)
             message = refusal(owner, function, arguments)
@@ -333,13 +312,12 @@ def tried_apart(make, observer):
 def find_all(write, observer):
     """One ``refusals`` record for each function of which a call was refused: all outcomes of the calls.
 
-    ``ends_without`` says what must not be None, if that ends Blender. Wants a system that can work apart.
+    Wants a system that can work apart.
     """
     found = defaultdict(list)
     for make in (objects, nodes_with_items, *(make for make in MAKERS if make is not added_by_operators)):
         for row in tried_apart(make, observer):
             found[row.pop("path")].append(row)
     for path, outcomes in sorted(found.items()):
-        ends = next(filter(None, [row.pop("ends_without", "") for row in outcomes]), "")
-        if ends or any(row["message"] for row in outcomes):
-            write("refusals", path=path, outcomes=outcomes, ends_without=ends)
+        if any(row["message"] for row in outcomes):
+            write("refusals", path=path, outcomes=outcomes)

@@ -28,7 +28,6 @@ from kb_build.symbols.lines import operator_needs, poll_line, type_text
 from kb_build.symbols.records import (
     ALSO,
     ENDS_BEFORE,
-    ENDS_WITHOUT,
     NOT_ENOUGH,
     REFUSED_ALL,
     WITHOUT_ACTIVE,
@@ -989,20 +988,6 @@ def test_a_thing_is_as_it_was_after_edit_mode_was_tried(tmp_path: Path) -> None:
     answers = run_statements(tmp_path, lines, {5: "[curve.splines[0] == spline, len(bpy.data.objects)]"})
     assert not any(error for error, _, _ in answers), answers
     assert answers[-1][1] == answers[-1][2]
-
-
-ADD_MODIFIER = """
-import bpy
-strips = bpy.context.scene.sequence_editor_create().strips
-strip = strips.new_effect("strip", "COLOR", channel=1, frame_start=1, length=9)
-strip.modifiers.new("modifier", "CURVES")
-"""
-
-
-def test_what_ends_blender_in_a_new_file_is_known(symbols: dict[str, Symbol]) -> None:
-    ended = subprocess.run([sys.executable, "-c", ADD_MODIFIER], capture_output=True, check=False)
-    known = symbols["bpy.types.StripModifiers.new"].flagged(ENDS_WITHOUT)
-    assert known == (("bpy.context.workspace.sequencer_scene",) if ended.returncode else ())
 
 
 @pytest.mark.parametrize(

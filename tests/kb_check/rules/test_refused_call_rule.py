@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from typing import TYPE_CHECKING
 
 import pytest
@@ -100,66 +98,3 @@ def test_a_new_file_before_it_is_no_reason_to_pass_a_second_call(check: Check) -
     assert not check("refused-call", start + call + "bpy.ops.wm.read_homefile()\n" + call)
     helper = "def fresh():\n    bpy.ops.wm.read_homefile()\n"
     assert not check("refused-call", start + helper + call + "fresh()\n" + call)
-
-
-@pytest.mark.parametrize(
-    ("before", "after"),
-    [
-        ("", ""),
-        ("bpy.context.workspace.sequencer_scene = scene", ""),
-        ("", "bpy.context.workspace.sequencer_scene = scene"),
-    ],
-)
-def test_a_call_that_ends_blender_is_found_unless_what_it_needs_is_set(
-    check: Check, before: str, after: str
-) -> None:
-    found = check(
-        "refused-call",
-        f"""\
-import bpy
-scene = bpy.context.scene
-{before}
-strips = scene.sequence_editor_create().strips
-strip = strips.new_effect("strip", "COLOR", channel=1, frame_start=1, length=9)
-strip.modifiers.new("modifier", "CURVES")
-{after}
-""",
-    )
-    assert [(finding.span.line, finding.severity) for finding in found] == [(6, "warning")] * (not before)
-
-
-_SCULPT = "import bpy\n{}\nbpy.ops.object.mode_set(mode='SCULPT')\n{}\n"
-_CREATE = "bpy.ops.sculpt.face_sets_create(mode='ALL')"
-_STEP = "bpy.ops.ed.undo_push(message='before')"
-
-
-@pytest.mark.parametrize(
-    ("before", "code"),
-    [
-        ("", _CREATE),
-        (_STEP, _CREATE),
-        ("bpy.ops.mesh.primitive_cube_add()", "bpy.ops.paint.mask_flood_fill(mode='VALUE', value=0.5)"),
-        ("", "bpy.ops.sculpt.symmetrize()"),
-        ("", "bpy.ops.sculpt.dynamic_topology_toggle()"),
-        ("", "bpy.ops.object.mode_set(mode='VERTEX_PAINT')\nbpy.ops.paint.vertex_color_set()"),
-    ],
-)
-def test_an_operator_that_ends_blender_without_an_undo_step_is_found(
-    check: Check, before: str, code: str
-) -> None:
-    script = _SCULPT.format(before, code)
-    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, check=False)
-    found = [finding.severity for finding in check("refused-call", script)]
-    assert found == ["warning"] * (ended.returncode < 0)
-
-
-@pytest.mark.parametrize(
-    "code",
-    [
-        _CREATE,
-        f"import bpy\ndef register():\n    bpy.ops.object.mode_set(mode='SCULPT')\n    {_CREATE}\n",
-        f"import bpy, helpers\nbpy.ops.object.mode_set(mode='SCULPT')\n{_CREATE}\n",
-    ],
-)
-def test_what_may_have_an_undo_step_is_left_alone(check: Check, code: str) -> None:
-    assert not check("refused-call", code)

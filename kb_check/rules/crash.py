@@ -1,0 +1,192 @@
+"""What crashes Blender: neither an error nor a `try` comes of it, the process ends.
+
+All of it was tried on new things: with None for what an argument or a property takes, without arguments that may be
+left out, without a scene for the sequencer, without an undo step, without a window.
+
+```python
+ob.vertex_groups.active = None  # reported: ob.vertex_groups.active_index = -1
+collection.objects.unlink(None)  # reported
+collection.objects.unlink(bpy.data.objects.get("Cube"))  # reported: it may give None
+ob.animation_data.fix_paths_rename_all()  # reported: without `prefix`
+strip.modifiers.new("Curves", "CURVES")  # reported: while bpy.context.workspace.sequencer_scene is None
+bpy.ops.sculpt.face_sets_create(
+    mode="ALL"
+)  # reported without bpy.ops.ed.undo_push(), in a Blender without a window
+image.gl_load()  # reported: in a Blender without a window
+```
+
+Only None is an error; what crashes some Blenders, or on some things, is a warning: without a window, in a new file,
+where `get` finds nothing.
+Not reported: what a script asks for (`if ob:`), and calls without a window in scripts that register what people call.
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_build.flow.types import NONE
+from kb_build.symbols.paths import last_name
+from kb_build.symbols.records import (
+    ENDS_BEFORE,
+    ENDS_LEFT_OUT,
+    ENDS_ON_NONE,
+    ENDS_WINDOWLESS,
+    ENDS_WITHOUT,
+    UNSET_BY,
+)
+from kb_check.calls import CallSite, calls
+from kb_check.findings import Edit, Finding, Fix
+from kb_check.given import Given, given_values
+from kb_check.made_here import bindings, called_operators, callee_path, is_named_before, knows_all, makers
+from kb_check.rule import Rule
+from kb_check.script import once_per_script
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_check.script import Script
+
+_ENTERING = frozenset({"bpy.ops.object.mode_set", "bpy.ops.sculpt.sculptmode_toggle"})
+_GETTING = "bpy.types.bpy_prop_collection.get"
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    for given in given_values(script):
+        yield from _given_none(script, given)
+    for call in calls(script):
+        yield from _left_out(script, call)
+        yield from _without_window(script, call)
+        yield from _unset(script, call)
+        yield from _without_step(script, call)
+
+
+def _given_none(script: Script, given: Given) -> Iterator[Finding]:
+    """None, or what may be None, for what crashes Blender then."""
+    taker = given.takers[0]
+    name = taker.path.rpartition("(")[2].removesuffix(")") if taker.is_parameter else taker.symbol.name
+    if any(ENDS_ON_NONE + name not in other.symbol.flags for other in given.takers):
+        return
+    path = taker.symbol.path
+    what = (
+        f"`{path}` crashes Blender where {f'`{name}` is None' if taker.is_parameter else 'it is set to None'}"
+    )
+    if script.type_of(given.node) == NONE:
+        index = next(iter(taker.symbol.flagged(UNSET_BY)), "")
+        hint = f": `{index} = -1` unsets it." if index else "."
+        yield Finding(
+            RULE.id,
+            "error",
+            script.span(given.node),
+            what + hint,
+            path,
+            (),
+            _by_index(script, given.node, index),
+        )
+    elif taker.is_parameter and (getting := _got(script, given.node)):
+        yield Finding(
+            RULE.id, "warning", script.span(given.node),
+            f"{what}, as `{ast.unparse(getting)}` is where there is no such item: ask before.", path,
+        )  # fmt: skip
+
+
+def _by_index(script: Script, value: ast.expr, index: str) -> Fix | None:
+    """``groups.active = None`` → ``groups.active_index = -1``."""
+    for node in script.all(ast.Assign) if index else ():
+        match node:
+            case ast.Assign(targets=[ast.Attribute(value=owner)], value=given) if given is value:
+                edit = Edit(script.span(node), f"{ast.unparse(owner)}.{index} = -1")
+                return Fix(f"Write {index} = -1", (edit,), sure=True)
+            case _:
+                pass
+    return None
+
+
+def _got(script: Script, node: ast.expr) -> ast.Call | None:
+    """The ``get`` of a collection, without a default, that an expression is; None where the script asks for it."""
+    if isinstance(node, ast.Name):
+        values = bindings(script).get(node.id, []) if node.id not in _tested(script) else []
+        node = values[0] if len(values) == 1 and values[0] else node
+    is_got = isinstance(node, ast.Call) and len(node.args) == 1 and callee_path(script, node) == _GETTING
+    return node if is_got and isinstance(node, ast.Call) else None
+
+
+@once_per_script
+def _tested(script: Script) -> frozenset[str]:
+    """The names that are part of some condition."""
+    conditions = [node.test for node in script.all(ast.If, ast.While, ast.IfExp, ast.Assert)]
+    conditions += script.all(ast.BoolOp, ast.Compare, ast.UnaryOp, ast.Match, ast.comprehension)
+    return frozenset(
+        name.id for condition in conditions for name in ast.walk(condition) if isinstance(name, ast.Name)
+    )
+
+
+def _left_out(script: Script, call: CallSite) -> Iterator[Finding]:
+    """A call without an argument that may be left out."""
+    path = call.callee.symbol.path
+    names = call.callee.symbol.flagged(ENDS_LEFT_OUT)
+    if names and not call.has_unpacking and not call.given & set(names):
+        wanted = " and ".join(f"`{name}`" for name in names)
+        yield Finding(
+            RULE.id, "warning", script.span(call.node), f"`{path}` crashes Blender without {wanted}.", path
+        )
+
+
+def _without_window(script: Script, call: CallSite) -> Iterator[Finding]:
+    """A call of what wants a window, in a script that may run without one."""
+    path = call.callee.symbol.path
+    if ENDS_WINDOWLESS in call.callee.symbol.flags and not _waits_for_people(script):
+        yield Finding(
+            RULE.id, "warning", script.span(call.node), f"`{path}` crashes a Blender without a window.", path
+        )
+
+
+def _unset(script: Script, call: CallSite) -> Iterator[Finding]:
+    """A call on what the script made while something is None that the script never sets."""
+    path, function = call.callee.symbol.path, call.node.func
+    for needed in call.callee.symbol.flagged(ENDS_WITHOUT):
+        owner = function.value if isinstance(function, ast.Attribute) else None
+        if (
+            isinstance(owner, ast.Attribute)
+            and knows_all(script)
+            and _is_made(script, owner.value)
+            and not is_named_before(script, last_name(needed), call.node)
+        ):
+            yield Finding(
+                RULE.id, "warning", script.span(call.node),
+                f"`{path}` crashes Blender while `{needed}` is None, as it is in a new file: set it before.", path,
+            )  # fmt: skip
+
+
+def _without_step(script: Script, call: CallSite) -> Iterator[Finding]:
+    """An operator that crashes a Blender without a window, where the script enters its mode and makes no undo step."""
+    path = call.callee.symbol.path
+    for before in call.callee.symbol.flagged(ENDS_BEFORE):
+        if (
+            not _ENTERING.isdisjoint(called_operators(script))
+            and knows_all(script)
+            and not _waits_for_people(script)
+            and not is_named_before(script, last_name(before.partition("(")[0]), call.node)
+        ):
+            yield Finding(
+                RULE.id, "warning", script.span(call.node),
+                f"`{path}` crashes a Blender without a window while there is no undo step: call `{before}` before "
+                "the mode is entered.", path,
+            )  # fmt: skip
+
+
+@once_per_script
+def _waits_for_people(script: Script) -> bool:
+    """Whether a script registers what people call, who have a window."""
+    return any(node.name == "register" for node in script.all(ast.FunctionDef)) or bool(
+        script.own_identifiers
+    )
+
+
+def _is_made(script: Script, owner: ast.expr) -> bool:
+    """Whether all that a name stands for was made by the script: ``strips.new_effect(…)``."""
+    made_by = makers(script, owner.id) if isinstance(owner, ast.Name) else frozenset[str]()
+    return bool(made_by) and all(last_name(path)[:3] == "new" for path in made_by)
+
+
+RULE = Rule("crash", "error", "What crashes Blender", _check)
