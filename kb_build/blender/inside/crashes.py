@@ -15,7 +15,7 @@ import bpy
 from . import rna
 from .apart import MOMENT, apart, crashes, sent_apart
 from .instances.making import SEQUENCER_SCENE, called, no_sequencer_scene, scratch_scene
-from .instances.new_things import MAKERS, animation, strips
+from .instances.new_things import BY_FUNCTIONS, animation, strips
 from .nodes import TREES
 from .nodes import make as make_in
 from .refusals import objects, plain_argument
@@ -303,7 +303,7 @@ def try_apart(make, observer, counts, send):
 def find_all(write, observer):
     """One ``crashes`` record for each setting and function. Wants a system that can work apart."""
     found, counts = {}, {}
-    for make in (editors, animation, whole_strips, objects, nodes, *MAKERS):
+    for make in (editors, animation, whole_strips, objects, nodes, *BY_FUNCTIONS):
         for row in sent_apart(partial(try_apart, make, observer, counts))[1]:
             if "path" in row:
                 found.setdefault(row["path"], row)

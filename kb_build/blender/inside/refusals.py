@@ -21,7 +21,7 @@ from .instances.making import (
     object_of,
     scratch_scene,
 )
-from .instances.new_things import MAKERS, added_by_operators
+from .instances.new_things import BY_FUNCTIONS
 from .instances.pointer_fillers import ADDING
 from .nodes import TREES
 from .nodes import make as make_in
@@ -315,7 +315,7 @@ def find_all(write, observer):
     Wants a system that can work apart.
     """
     found = defaultdict(list)
-    for make in (objects, nodes_with_items, *(make for make in MAKERS if make is not added_by_operators)):
+    for make in (objects, nodes_with_items, *BY_FUNCTIONS):
         for row in tried_apart(make, observer):
             found[row.pop("path")].append(row)
     for path, outcomes in sorted(found.items()):

@@ -531,6 +531,8 @@ MAKERS = (
     animation, tracking, armatures, splines, mesh_parts, drawings, scenes, libraries, node_trees,
     node_items, small_parts,
 )  # fmt: skip
+# Those whose things are small: on large ones some functions wait for threads, which a copy of a process has not.
+BY_FUNCTIONS = tuple(make for make in MAKERS if make is not added_by_operators)
 
 
 def place_of(thing):
