@@ -40,9 +40,13 @@ def _check(script: Script) -> Iterator[Finding]:
 
 
 def _of_lost_module(script: Script, row: Resolution) -> Lacking | None:
-    """What became of an operator whose module is gone, where the script names one that was in it."""
+    """What became of an operator whose module is gone, or what is like one of a module that never was."""
     name = members_taken(script).get(row.node) if isinstance(row.node, ast.expr) else None
-    return script.names.path(f"{row.missing[0]}.{row.value}.{name}") if name else None
+    if not name:
+        return None
+    module = f"{row.missing[0]}.{row.value}"
+    lacking = script.names.path(f"{module}.{name}") or script.names.member(module, name)
+    return lacking if lacking.removed or lacking.instead else None
 
 
 RULE = Rule("unknown-operator", "error", "An operator that does not exist", _check)

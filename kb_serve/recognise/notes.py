@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
-from kb_build.symbols.api_names import STRUCT, TYPES, interface_part
+from kb_build.symbols.api_names import OPERATORS, STRUCT, TYPES, interface_part
 from kb_build.symbols.paths import as_code, split_path
 from kb_build.symbols.unlisted import OPTIONS, option_of
 from kb_serve.recognise.names.corrections import nearest
@@ -166,8 +166,11 @@ class Notes:
 
     def _lacks(self, missing: MissingName) -> str:
         """A sentence on what a class does not have, and whether it ever had it."""
-        never = self.never(missing.owner, missing.name) if missing.sure else ""
-        return f"`{missing.owner}` has no `{missing.name}`{never}."
+        owner, name = missing.owner, missing.name
+        if owner.startswith(OPERATORS) and self._reader.entry(owner) is None:
+            owner, _, name = owner.rpartition(".")  # no such module
+        never = self.never(owner, name) if missing.sure else ""
+        return f"`{owner}` has no `{name}`{never}."
 
     def never(self, owner: str, name: str) -> str:
         """Since when a class is known not to have had a name, as the end of a sentence; "" where that is not known.

@@ -288,7 +288,7 @@ class Recogniser:
         for place, (name, alike) in enumerate(similar):
             if member := self._reader.member_of(missing.owner, name):
                 recognition.add(member.path, 0.95 * alike - 0.01 * place, SIMILAR)
-        if missing.owner and not similar and not otherwise:
+        if self._reader.entry(missing.owner) and not similar and not otherwise:
             self._like_nothing(missing, names, recognition)
 
     def _like_nothing(self, missing: MissingName, names: list[str], recognition: Recognition) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.api_names import OPERATORS, TYPES
 from kb_build.symbols.unlisted import SOMETIMES
 from kb_serve.recognise.names.elements import ADDING, elsewhere, meant_by_key
 from kb_serve.recognise.names.holders import of_collection
@@ -98,7 +98,11 @@ class BrokenExpressions:
             certain = self._leads_there_alone(chain, resolved)
             variable = "" if certain or is_clear(chain, resolved) else chain.root
             told = certain or resolved.fit >= LIKELY or (called and resolved.missing in ADDING)
-            missing = MissingName(resolved.missing, resolved.owner, assigned, sure, called, variable, told)
+            owner_path, name = resolved.owner, resolved.missing
+            if f"{owner_path}." == OPERATORS and behind and behind[0].kind == "attr":
+                # A module that is not there: what is meant is told by its operator.
+                owner_path, name = f"{OPERATORS}{name}", behind[0].text
+            missing = MissingName(name, owner_path, assigned, sure, called, variable, told)
             recognition.missing.append(missing)
             if self._is_known_element(chain, resolved):
                 recognition.add(resolved.owner, _KNOWN_ELEMENT - later, "owner")

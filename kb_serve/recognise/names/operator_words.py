@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.index.analysis import stem, words
@@ -48,15 +49,39 @@ class OperatorWords:
         """
         if not f"{owner}.".startswith(OPERATORS):
             return []
-        said = _stems(words(name))
+        said = _stems(self._joined(words(name)))
         # Of objects much is done by operators of other modules.
         module = _stems(words(owner.removeprefix(OPERATORS.rstrip(".")))) - _OF_ALL
         # One that is called so as a whole is nearer than one without the words that say little.
         nearest = (self._nearest(meant, module) for meant in (said, said - _SAYS_LITTLE))
         cost, found = min(nearest, key=lambda one: one[0])
-        weights = self._reader.weights(found)
-        found.sort(key=lambda path: (not path.startswith(f"{owner}."), -weights.get(path, 0.0)))
-        return found[:_FEW] if len(found) <= _FEW or not cost[0] else []
+        found = self._heaviest(found)
+        found.sort(key=lambda path: not path.startswith(f"{owner}."))
+        # Of a module that is not there one is meant, whichever operator of it.
+        is_one_module = not self._reader.entry(owner) and len({path.split(".")[2] for path in found}) == 1
+        return found[:_FEW] if len(found) <= _FEW or not cost[0] or is_one_module else []
+
+    def _joined(self, spoken: list[str]) -> list[str]:
+        """The words of a name, two of them as one where a module is called so: ``rigid``, ``body``."""
+        for place, pair in enumerate(pairwise(spoken)):
+            if "".join(pair) in self._modules:
+                return [*spoken[:place], "".join(pair), *spoken[place + 2 :]]
+        return spoken
+
+    @cached_property
+    def _modules(self) -> frozenset[str]:
+        return frozenset(path.split(".")[2] for path in self._own_words)
+
+    def _heaviest(self, paths: list[str]) -> list[str]:
+        """Operators, those first that count most; of a module's with the same words the shorter one counts as much."""
+        weights = self._reader.weights(paths)
+        alike: dict[tuple[frozenset[str], frozenset[str]], float] = {}
+        for path in paths:
+            key = self._words[path].own, self._words[path].module
+            alike[key] = max(alike.get(key, 0.0), weights.get(path, 0.0))
+        return sorted(
+            paths, key=lambda path: (-alike[self._words[path].own, self._words[path].module], len(path))
+        )
 
     def _nearest(self, said: frozenset[str], module: frozenset[str]) -> tuple[tuple[int, int], list[str]]:
         """How many words are too many or too few at best, how many of these too few, and the operators."""
@@ -64,7 +89,7 @@ class OperatorWords:
         for path, own in self._words.items() if said else ():
             if all(map(own.has, said)):
                 lacking = len(module - own.own - own.module)
-                costs[path] = lacking + len(own.own - said - module), lacking
+                costs[path] = lacking + len(own.own - said - module - _OF_ALL), lacking
         best = min(costs.values(), default=(len(said | module), 0))
         found = [path for path, cost in costs.items() if cost == best]
         return best, found

@@ -29,6 +29,11 @@ MEANT = {
     "wm.open_file": "wm.open_mainfile",
     "mesh.primitive_sphere_add": "mesh.primitive_uv_sphere_add",
     "purge_orphans": "outliner.orphans_purge",
+    "rigidbody.add": "rigidbody.object_add",
+    "physics.add_rigid_body": "rigidbody.object_add",
+    "physics.bake_all": "ptcache.bake_all",
+    "export.gltf": "export_scene.gltf",
+    "light.add": "object.light_add",
 }
 
 
@@ -38,6 +43,12 @@ def test_the_operator_with_these_words_comes_first(kb: KnowledgeBase, written: s
     answer = kb.query(f"bpy.ops.{written}()")
     assert answer.hits[0].id == f"bpy.ops.{MEANT[written]}"
     assert any("has no" in note for note in answer.notes)
+
+
+def test_of_a_module_that_never_was_nothing_is_told_but_that(kb: KnowledgeBase) -> None:
+    answer = kb.query("bpy.ops.nonsense.frobnicate()")
+    assert any("`bpy.ops` has no `nonsense`" in note for note in answer.notes)
+    assert not any("Closest" in note for note in answer.notes)
 
 
 def test_of_too_many_that_are_alike_none_is_told(reader: BaseReader) -> None:
