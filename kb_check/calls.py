@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import ClassObject, Function, NoneValue, Operator, members
 from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.records import RETURNS_NONE
 from kb_check.literals import times_bound
 from kb_check.made_here import bindings
 from kb_check.script import once_for_each, once_per_script
@@ -145,19 +146,32 @@ def _site(node: ast.Call, symbol: Symbol) -> CallSite:
 def nothing_from(script: Script, node: ast.expr) -> str:
     """The function whose call a value surely is, where that returns nothing: ``mesh.vertices.add(3)``; or empty.
 
-    RNA tells of its own functions; those without parameters may be Python's.
+    RNA tells of its own functions; those without parameters may be Python's. Of mathutils' methods it was tried.
     """
     value = _once_held(script).get(node.id) if isinstance(node, ast.Name) else node
     call = calls_by_node(script).get(value) if isinstance(value, ast.Call) else None
+    if call is not None and RETURNS_NONE in call.callee.symbol.flags:
+        return call.callee.symbol.path
     if call is None or not call.callee.is_rna or call.callee.symbol.kind != "function":
         return ""
     return "" if call.callee.symbol.returns or not call.callee.parameters else call.callee.symbol.path
 
 
+def other_way(script: Script, path: str) -> str:
+    """Which method returns what another one makes of its value in place, as a further sentence; empty for none."""
+    owner, _, name = path.rpartition(".")
+    copying = next((other for end in ("d", "ed") if script.api.member(owner, other := name + end)), "")
+    return f" `{copying}()` returns another one." if copying else ""
+
+
 @once_per_script
 def _once_held(script: Script) -> dict[str, ast.expr]:
-    """Name → what it is bound to, of those that are bound once and used for nothing but to read from them."""
-    owners = {node.value for node in script.all(ast.Attribute, ast.Subscript)}
+    """Name → what it is bound to, of those that are bound once and used for nothing but to read from them, and to
+    compute with them.
+    """
+    owners: set[ast.expr] = {node.value for node in script.all(ast.Attribute, ast.Subscript)}
+    for node in script.all(ast.BinOp):
+        owners |= {node.left, node.right}
     asked = {
         node.id for node in script.all(ast.Name) if isinstance(node.ctx, ast.Load) and node not in owners
     }

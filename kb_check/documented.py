@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.facts import ELEMENT, ELEMENTS, LAYER_ITEM
 from kb_build.flow.types import NONE, UNKNOWN, Instance, Mapping, Plain, Sequence, Tuple, members
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.paths import last_name
 from kb_check.calls import calls_by_node
 from kb_check.literals import items, written
 from kb_check.made_here import bindings
@@ -34,6 +35,7 @@ _BMESH, _BMESH_OPERATORS, _BMESH_TYPES = "bmesh.", "bmesh.ops.", "bmesh.types."
 _MATHUTILS, _MATRIX, _VECTOR_CLASS = "mathutils.", "mathutils.Matrix", "mathutils.Vector"
 # ``bpy.types.Mesh``, ``Sequence[BMVert | BMEdge]``, ``bpy.types.Area | None``.
 _CLASSES = re.compile(r"(?P<many>Sequence\[)?(?P<classes>[\w.]+(?: \| [\w.]+)*)(?(many)\])")
+_WORD = re.compile(r"\w+")
 _CLASS = re.compile(r"type(\[.*\])?")  # of what takes a class itself
 _DECLARING = "bpy.props."  # has a rule of its own
 _IN_C = ("bmesh.", "mathutils.", "gpu.", "imbuf.", T)
@@ -47,6 +49,8 @@ _STRICT = {**_DOCUMENTED, "enum": frozenset({"str"}), "int": _TRUTH, "bool": _TR
 _WORDS = {"int": "an int", "bool": "True or False"}
 # The parts of documented types of mathutils that are sequences of numbers.
 _OF_MATHUTILS = frozenset({"Vector", "Quaternion", "Euler", "Matrix", "Color", "Sequence[float]", "None"})
+# What rotates a value is an instance of one of these, and no sequence.
+_ROTATIONS = frozenset({"Euler", "Quaternion", "Matrix"})
 
 
 def lengths(taker: Taker) -> tuple[int, ...]:
@@ -101,6 +105,12 @@ def _is_vector_member(taker: Taker) -> bool:
 def _plain_misfit(taker: Taker, kind: Type) -> Misfit | None:
     """A value that no reading of the reference allows: text for a number, a number for text, either for a vector."""
     path, documented = taker.path, taker.documented
+    named = frozenset[str](_WORD.findall(documented))
+    if path.startswith(_MATHUTILS) and named - {"or"} == _ROTATIONS:
+        is_refused = isinstance(kind, (Plain, Tuple, Sequence))
+        if isinstance(kind, Instance) and kind.sure and kind.cls.startswith(_MATHUTILS):
+            is_refused = last_name(kind.cls) not in _ROTATIONS
+        return Misfit("an Euler, a Quaternion or a Matrix", describe(kind)) if is_refused else None
     is_math = path.startswith(_MATHUTILS) and _OF_MATHUTILS.issuperset(_parts(documented))
     is_vector = path.startswith(_BMESH_OPERATORS) and _VECTOR.fullmatch(documented)
     if is_math or is_vector or _is_vector_member(taker):

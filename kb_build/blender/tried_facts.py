@@ -36,6 +36,7 @@ from kb_build.symbols.records import (
     NONE_ON_SOME,
     NOT_KNOWN,
     REFUSED_ALL,
+    RETURNS_NONE,
     SETS_ALSO,
     STOPS,
     UNBOUNDED,
@@ -260,6 +261,12 @@ def _add_gives_none(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
         row["flags"] = [*row.get("flags", ()), GIVES_NONE]
 
 
+def _add_returns_none(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
+    """Adds that a method returns None."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), RETURNS_NONE]
+
+
 def _add_windowless(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
     """Adds what Blender said of a call where it had no window."""
     if row is not None:
@@ -324,6 +331,7 @@ ADDED = {
     "limits": _add_limits,
     "locked": _add_locked,
     "own_class": _add_own_class,
+    "returns_none": _add_returns_none,
     "start_empty": _add_start_empty,
     "start_filled": _add_start_filled,
     "undo_step": _add_undo_step,

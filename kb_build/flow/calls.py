@@ -27,6 +27,7 @@ from kb_build.flow.types import (
     Type,
     Union,
     literal_text,
+    literal_texts,
     union,
 )
 from kb_build.symbols.api_names import NODE, OBJECT
@@ -50,14 +51,14 @@ class Calls(ApiCalls, PythonCalls):
             result = self._one_of_several(callee, call)
         else:
             result = self._one_call(callee, call)
-        self.here.scope.state.active = self._active_after(callee)
+        self.here.scope.state.active = self._active_after(callee, call)
         return result
 
-    def _active_after(self, callee: Type) -> Type | None:
+    def _active_after(self, callee: Type, call: ReadCall) -> Type | None:
         """The active object behind a call, where an operator has made it and nothing may have changed that."""
         match callee:
             case Operator(path=path) if kind := made_by(path):
-                data = self.api.object_data(kind)
+                data = self._data_of_type(self.api.object_data(kind), call)
                 return Instance(OBJECT, (("data", data),)) if data is not UNKNOWN else None
             case Operator(path=path) if not leaves_active(path):
                 return None
@@ -67,6 +68,14 @@ class Calls(ApiCalls, PythonCalls):
                 return self.here.scope.state.active
             case _:
                 return None
+
+    def _data_of_type(self, data: Type, call: ReadCall) -> Type:
+        """The data of an object as the call's type decides it: ``light_add(type='SPOT')`` makes a SpotLight."""
+        values = literal_texts(call.keywords["type"]) if "type" in call.keywords else ()
+        if not isinstance(data, Instance) or not values:
+            return data
+        classes = (self.api.class_of_value(data.cls, value) for value in values)
+        return union([replace(data, cls=cls) if cls else data for cls in classes])
 
     def _one_of_several(self, callee: Union, call: ReadCall) -> Type:
         """A call of one of several: an argument is recorded for all of them, and is none where none takes it."""

@@ -251,6 +251,12 @@ class Expressions(Members):
                 if pair not in PRODUCTS["@"]:
                     return UNKNOWN
                 operator = ast.MatMult()  # which is meant
+        elif isinstance(operator, ast.MatMult) and (is_math(left) or is_math(right)):
+            self.here.resolutions.pop(node, None)
+            pair = _operand(left), _operand(right)
+            if all(pair):
+                sure = all(kind.sure for kind in (left, right) if isinstance(kind, Instance))
+                self.resolve(node, "product", "@", missing=pair, sure=sure)
         elif (sign := _SUMS.get(type(operator), "")) and (is_math(left) or is_math(right)):
             self.here.resolutions.pop(node, None)
             pair = _operand(left), _operand(right)

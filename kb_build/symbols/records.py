@@ -88,8 +88,8 @@ NONE_ON_SOME = "none-on-some"
 # The flags of a collection of ``bpy.data`` that is empty when Blender starts, and of a pointer that leads to something
 # on what it starts with.
 EMPTY_AT_START, FILLED_AT_START = "empty-at-start", "filled-at-start"
-# The flag of a function that gave None for every index.
-GIVES_NONE = "gives-none"
+# The flag of a function that gave None for every index, and of a method that changes its value and returns None.
+GIVES_NONE, RETURNS_NONE = "gives-none", "returns-none"
 # How a flag begins with what Blender said of a call where it had no window.
 WINDOWLESS = "windowless:"
 # How a flag begins that names the property of the same class which always has the same value.

@@ -10,6 +10,8 @@ ob.location + (0, 0, 1)  # reported
 ob.location + Vector((0, 0, 1))
 ```
 
+So is what is computed with None: `matrix.invert() @ vector`, for `matrix.inverted()`.
+
 A vector is added to a vector only, and divided by a number only.
 
 Two matrices or two quaternions are a warning: ``*`` of them works, and gives something else than it did until 2.79.
@@ -29,8 +31,10 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import PRODUCTS
 from kb_build.flow.types import Instance
+from kb_check.calls import nothing_from, other_way
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.rule import Rule
+from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -38,6 +42,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _MATH = frozenset(f"mathutils.{name}" for name in ("Color", "Euler", "Matrix", "Quaternion", "Vector"))
+_SEQUENCE = "a sequence"  # of Python's
 _TRANSFORMS = frozenset({"mathutils.Matrix", "mathutils.Quaternion"})
 
 
@@ -46,24 +51,39 @@ def _check(script: Script) -> Iterator[Finding]:
         left, right = row.missing[0], row.missing[-1]
         is_other = (left, right) in PRODUCTS["@"]
         advice = "Multiply them with `@`." if is_other else "Convert one of them first."
+        if _SEQUENCE in (left, right):
+            advice = "Make a vector of the sequence: `mathutils.Vector(…)`."
         if isinstance(row.node, ast.AugAssign):
             advice = f"In place the result must be of the same class.{' Write `a = b @ a`.' * is_other}"
+        fix = _fix(script, row.node) if is_other and isinstance(row.node, ast.BinOp) else None
         yield Finding(
-            RULE.id, "error", script.span(row.node), f"`{left} {row.value} {right}` is refused. {advice}", left,
-            (), _fix(script, row.node) if is_other and isinstance(row.node, ast.BinOp) else None,
+            RULE.id, "error", script.span(row.node), f"`{left} {row.value} {right}` is refused. {advice}",
+            left if left in _MATH else right, (), fix,
         )  # fmt: skip
     for row in script.missing("sum"):
         left, right = row.missing[0], row.missing[-1]
         advice = "Convert one of them first."
         if row.value == "/":
             advice = "Vectors and colors are divided by a number, nothing else is divided."
-        elif _MATH.issuperset({left, right} - {"a sequence"}):
+        elif _MATH.issuperset({left, right} - {_SEQUENCE}):
             advice = f"Make one of the other: `{next(cls for cls in (left, right) if cls in _MATH)}(…)`."
         yield Finding(
             RULE.id, "error", script.span(row.node), f"`{left} {row.value} {right}` is refused. {advice}",
             left if left in _MATH else right,
         )  # fmt: skip
     yield from _by_item(script)
+    yield from _with_nothing(script)
+
+
+def _with_nothing(script: Script) -> Iterator[Finding]:
+    """What is computed with None, which a method gives that changes its value in place."""
+    for node in script.all(ast.BinOp):
+        for side in (node.left, node.right):
+            if (function := nothing_from(script, side)) and not is_tried(script, node):
+                yield Finding(
+                    RULE.id, "error", script.span(side),
+                    f"`{function}` returns nothing to compute with.{other_way(script, function)}", function,
+                )  # fmt: skip
 
 
 def _by_item(script: Script) -> Iterator[Finding]:

@@ -32,7 +32,7 @@ from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.object_data import OBJECT_DATA
 from kb_check.annotated_parameters import ONE_IS_WRONG, is_annotated
-from kb_check.calls import nothing_from
+from kb_check.calls import nothing_from, other_way
 from kb_check.findings import Finding, Fix
 from kb_check.made_here import bindings, callee_path, member_path, words_of
 from kb_check.raised import LACKS
@@ -186,7 +186,10 @@ def _of_python(script: Script) -> Iterator[Finding]:
     """Attributes of one number, truth value or text, or of None."""
     for node in script.all(ast.Attribute):
         if function := nothing_from(script, node.value):
-            path, told = function, f"`{function}` returns nothing: there is no `{node.attr}`."
+            path, told = (
+                function,
+                f"`{function}` returns nothing: there is no `{node.attr}`.{other_way(script, function)}",
+            )
         else:
             path = member_path(script, node.value) if isinstance(node.value, ast.Attribute) else ""
             kind = _scalar(script, path, node)

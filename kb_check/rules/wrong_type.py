@@ -38,6 +38,7 @@ from kb_build.symbols.api_names import GROUPS, ID, NODE, OBJECT, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.object_data import OBJECT_DATA
 from kb_check.annotated_parameters import ONE_IS_WRONG, is_annotated
+from kb_check.calls import nothing_from, other_way
 from kb_check.conversions import misfit
 from kb_check.documented import layer_misfit
 from kb_check.findings import Edit, Finding, Fix, Span
@@ -70,6 +71,9 @@ def _check(script: Script) -> Iterator[Finding]:
         if all(taker.kind == "string" for taker in given.takers) and is_path(script, given.node):
             yield _path_given(script, given)
             continue
+        if isinstance(given.node, ast.Call) and (function := nothing_from(script, given.node)):
+            yield from _nothing_given(script, given, function)
+            continue
         found = [misfit(script, taker, given.node) for taker in given.takers]
         if not found or not all(found):
             continue
@@ -89,6 +93,16 @@ def _check(script: Script) -> Iterator[Finding]:
             taker.path, (), _fix(script, taker, wrong, given.node) if len(given.takers) == 1 else None,
         )  # fmt: skip
     yield from _items_given(script)
+
+
+def _nothing_given(script: Script, given: Given, function: str) -> Iterator[Finding]:
+    """A call that returns nothing, given to what takes no None."""
+    taker = given.takers[0]
+    if taker.kind and not any(other.kind in {"", "pointer"} for other in given.takers):
+        yield Finding(
+            RULE.id, "error", script.span(given.node),
+            f"`{function}` returns nothing to give to `{taker.path}`.{other_way(script, function)}", taker.path,
+        )  # fmt: skip
 
 
 def _path_given(script: Script, given: Given) -> Finding:

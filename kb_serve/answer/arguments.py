@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.flags import never_taken
 from kb_build.symbols.lines import SET, literal, refusal_lines, said_taken, taken_where
+from kb_build.symbols.records import RETURNS_NONE
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.enum_items import item_lines
 from kb_serve.answer.property_facts import UNITS, range_text
@@ -44,6 +45,8 @@ def arguments(symbol: Symbol, asked: AskedOf) -> Iterator[AnswerBlock]:
     if symbol.returns:
         lines = "\n".join(map(_parameter_line, symbol.returns))
         yield AnswerBlock(f"**Returns**{_kept_in(symbol)}\n{lines}", "returns")
+    elif RETURNS_NONE in symbol.flags:
+        yield AnswerBlock("**Returns** None: it changes the value that it is called on", "returns")
     if lines := "\n".join(f"- {line}" for line in refusal_lines(symbol)):
         yield AnswerBlock(f"**Refused, of all that was tried**\n{lines}", "refused calls")
     for parameter in symbol.parameters:

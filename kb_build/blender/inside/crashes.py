@@ -235,6 +235,7 @@ class Trial:
     def __init__(self, send, counts):
         self.send = send
         self.counts = counts
+        self.survived = set()
         self.things = []
 
     def look(self, label, owners):
@@ -242,13 +243,17 @@ class Trial:
         left = [attempt for owner in owners for attempt in self.attempts(owner)]
         while left:
             done, begun = sent_apart(partial(try_each, left), MOMENT)
-            if done or not begun:
+            place = len(left) if done else begun[-1] if begun else 0
+            self.survived.update(attempt.path for attempt in left[:place])
+            if done:
                 break
-            last = left[begun[-1]]
-            left = left[begun[-1] + 1 :]
+            last = left[place]
+            left = left[place + 1 :]
             if crashes(lambda last=last: tried(last.run)) and (causes := last.causes()):
-                self.counts[self.key(last.item)] = MOST_THINGS
-                self.send({"path": last.path, "made": label, **causes})
+                is_own = last.path.startswith(f"bpy.types.{last.owner.bl_rna.identifier}.")
+                if is_own:
+                    self.counts[self.key(last.item)] = MOST_THINGS
+                self.send({"path": last.path, "made": label, "is_own": is_own, **causes})
         self.things += owners
 
     def attempts(self, owner):
@@ -297,17 +302,22 @@ def try_apart(make, observer, counts, send):
     """The same in a process of its own."""
     trial = Trial(send, counts)
     try_all(make, observer, trial)
-    send({"counts": trial.counts})
+    send({"counts": trial.counts, "survived": sorted(trial.survived)})
 
 
 def find_all(write, observer):
-    """One ``crashes`` record for each setting and function. Wants a system that can work apart."""
-    found, counts = {}, {}
+    """One ``crashes`` record for each setting and function. Wants a system that can work apart.
+
+    What a class inherits may crash Blender for a reason of its own: it is told where it did on all that was tried.
+    """
+    found, counts, survived = {}, {}, set()
     for make in (editors, animation, whole_strips, objects, nodes, *BY_FUNCTIONS):
         for row in sent_apart(partial(try_apart, make, observer, counts))[1]:
             if "path" in row:
                 found.setdefault(row["path"], row)
             else:
                 counts = row["counts"]
-    for _, row in sorted(found.items()):
-        write("crashes", **row)
+                survived.update(row["survived"])
+    for path, row in sorted(found.items()):
+        if row.pop("is_own") or path not in survived:
+            write("crashes", **row)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import terms
 from kb_build.symbols.api_names import OPERATORS, TYPES
 from kb_build.symbols.flags import empty_when_new, fillers
-from kb_build.symbols.records import FILLED_BY
+from kb_build.symbols.records import FILLED_BY, RETURNS_NONE
 from kb_serve.recognise.messages.absent import ANY, WEIGHTY, is_empty_when_new
 from kb_serve.recognise.resolving.bindings import with_bindings
 from kb_serve.recognise.resolving.chains import find_chains
@@ -40,8 +40,14 @@ class NoneBefore:
 
     def explain(self, name: str, query: str, recognition: Recognition) -> None:
         """Adds what may have been None before ``.name``: pointers to classes that have the name, or once had it, what
-        the context gives, and look-ups by name.
+        the context gives, and look-ups by name. Where the code calls what always returns None, that alone.
         """
+        if method := self._returning_none(name, query):
+            recognition.notes.append(
+                f"`{method}` changes its own value and returns None: read it in a line of its own."
+            )
+            recognition.add(method, _IS_READ, "error message")
+            return
         owners = {
             entry.owner.removeprefix(TYPES)
             for entry in self._reader.by_name(name)
@@ -203,6 +209,23 @@ class NoneBefore:
             if entry.group != "ui" and not self._is_flagged(entry, "never-none")
         ]
         return [entry for entry in holders if entry.owner != TYPES + cls] or holders
+
+    def _returning_none(self, name: str, query: str) -> str:
+        """The method that is called before ``.name`` and returns None; empty for none."""
+        for chain in with_bindings(query, find_chains(query)):
+            for (first, call), (_, last) in pairwise(pairwise(chain.steps)):
+                if call.kind == "call" and last.text == name:
+                    found = [
+                        entry for entry in self._reader.by_name(first.text) if self._gives_none(entry.path)
+                    ]
+                    having = (entry for entry in found if self._reader.member_of(entry.owner, name))
+                    if one := next(having, None) or next(iter(found), None):
+                        return one.path
+        return ""
+
+    def _gives_none(self, path: str) -> bool:
+        symbol = self._reader.symbol(path)
+        return symbol is not None and RETURNS_NONE in symbol.flags
 
     def _once(self, name: str) -> list[RemovedSymbol]:
         """The removed data members of that name, if few: those with a successor first."""

@@ -8,7 +8,32 @@ _NO_FACTOR = (
     "A tuple or list is no factor: make it a vector first, `matrix @ Vector(value)`, `Vector(value) * 2`; two vectors "
     "are multiplied number by number: `Vector(value) * v`."
 )
+_IS_NONE = (
+    "One side is None: `normalize()`, `invert()`, `transpose()`, `rotate()` and the like change their own value and "
+    "return nothing. `normalized()`, `inverted()`, `transposed()` return another one."
+)
 VECTORS = (
+    NamelessMessage(
+        ("multiplication: not supported between ", "'NoneType'"),
+        ("mathutils.Matrix.inverted", "mathutils.Vector.normalized"),
+        _IS_NONE,
+    ),
+    NamelessMessage(
+        ("Vector ", "NoneType", "invalid type for this operation"),
+        ("mathutils.Vector.normalized", "mathutils.Matrix.inverted"),
+        _IS_NONE,
+    ),
+    NamelessMessage(
+        ("number of columns and the matrix2 number of rows must be the same",),
+        ("mathutils.Matrix.to_3x3", "mathutils.Matrix.to_4x4"),
+        "One matrix is 3×3, the other 4×4: `m.to_4x4()` makes the first kind the second, `m.to_3x3()` the other way "
+        "round, without the translation.",
+    ),
+    NamelessMessage(
+        ("Can't have the same axis for track and up",),
+        ("mathutils.Vector.to_track_quat",),
+        "`track` and `up` name two axes: `v.to_track_quat('-Z', 'Y')` for cameras and lights.",
+    ),
     NamelessMessage(
         ("Vector is not frozen (mutable), call freeze first",),
         ("mathutils.Vector.freeze", "mathutils.Vector.is_frozen"),
@@ -24,6 +49,7 @@ VECTORS = (
         ("mathutils.Vector",),
         "Vectors are added to vectors: `v + Vector(value)`, with a value of as many numbers; `Vector((n, n, n))` for "
         "one number.",
+        without=("NoneType",),
     ),
     NamelessMessage(
         ("multiplication: not supported between ", "'tuple'"),
