@@ -34,6 +34,8 @@ _LISTS = {
     "Iterable": "iterator", "Generator": "iterator",
 }  # fmt: skip
 _LIST_OF = re.compile(r"^(?:[Ll]ist|[Ss]equence|[Tt]uple) of ([\w.]+)$")
+# ``BMLayerCollection of BMLoopUV``, as references wrote it until 5.0.
+_CLASS_OF = re.compile(r"([\w.]+) of ([\w.]+)")
 _MAPPINGS = frozenset({"dict", "Mapping", "Dict"})
 
 
@@ -46,6 +48,8 @@ def read_type(text: str, class_named: Callable[[str], str]) -> Type:
         return _PLAIN[text]
     if found := _LIST_OF.match(text):
         return Sequence("list", read_type(found[1], class_named))
+    if found := _CLASS_OF.fullmatch(text):
+        text = f"{found[1]}[{found[2]}]"
     try:
         tree = ast.parse(text, mode="eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError):

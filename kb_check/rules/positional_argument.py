@@ -62,7 +62,7 @@ _PATHS = frozenset(
 )  # what these return has a separator
 _NO_DICTIONARY_SINCE = (4, 0)
 # Where the reference shows one of several signatures, or leaves an argument out.
-_UNRELIABLE = ("aud.", "freestyle.", "bpy.types.Gizmo.target_set_value")
+_UNRELIABLE = ("aud.", "freestyle.", "bpy.types.Gizmo.target_set_value", "mathutils.geometry.normal")
 
 
 def _check(script: Script) -> Iterator[Finding]:

@@ -21,3 +21,9 @@ STRIPS = "bpy.types.Sequence"
 )
 def test_a_class_of_blender_comes_before_pythons_word(text: str, has_strips: bool, kind: object) -> None:
     assert read_type(text, lambda name: STRIPS if has_strips and name == "Sequence" else "") == kind
+
+
+@pytest.mark.parametrize("text", ["Layers[Item]", "Layers of Item", "x.Layers of x.Item"])
+def test_what_a_class_holds_is_read_in_each_form(text: str) -> None:
+    read = read_type(text, lambda name: f"x.{name.removeprefix('x.')}")
+    assert read == Instance("x.Layers", (("[]", Instance("x.Item")),))
