@@ -38,8 +38,10 @@ _NEED_ALL = frozenset(
     }
 )  # fmt: skip
 # Parameters that may be left out though the reference shows no default: a turn or a scale of a 2 × 2 matrix has no
-# axis, and Vector.Range counts as Python's range does.
+# axis, and Vector.Range counts as Python's range does. The references before 5.1 give a function an argument that it
+# does not take.
 _MAY_BE_LEFT_OUT = {
+    "gpu.state.active_framebuffer_get": {"enable"},
     "mathutils.Matrix.Rotation": {"axis"}, "mathutils.Matrix.Scale": {"axis"}, "mathutils.Vector.Range": {"stop"},
 }  # fmt: skip
 # Those that may be left out but for some values of another argument: (parameter, other, values).
