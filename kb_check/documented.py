@@ -102,11 +102,14 @@ def _is_vector_member(taker: Taker) -> bool:
     return is_member and taker.documented == _VECTOR_CLASS
 
 
+def _rotations_only(documented: str) -> bool:
+    return frozenset[str](_WORD.findall(documented)) - {"or"} == _ROTATIONS
+
+
 def _plain_misfit(taker: Taker, kind: Type) -> Misfit | None:
     """A value that no reading of the reference allows: text for a number, a number for text, either for a vector."""
     path, documented = taker.path, taker.documented
-    named = frozenset[str](_WORD.findall(documented))
-    if path.startswith(_MATHUTILS) and named - {"or"} == _ROTATIONS:
+    if path.startswith(_MATHUTILS) and _rotations_only(documented):
         is_refused = isinstance(kind, (Plain, Tuple, Sequence))
         if isinstance(kind, Instance) and kind.sure and kind.cls.startswith(_MATHUTILS):
             is_refused = last_name(kind.cls) not in _ROTATIONS
