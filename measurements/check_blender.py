@@ -2,8 +2,8 @@
 
 ``python -m measurements --only check_blender`` checks every script that the base's Blender brings, and those of each
 other version from 4.2 on whose base lies beside it. A finding is true if ``broken_in_blender.toml`` has a row for it
-and Blender, when it runs the row's code, says what the row says; a comparison that never holds if Blender's own
-enumeration lacks the value. Every other error is counted as false. Warnings of
+and Blender, when it runs the row's code, says what the row says; a comparison that never holds also if
+Blender's own enumeration lacks the value. Every other error is counted as false. Warnings of
 other rules, and notes, are counted alone.
 
 This project's own scripts that run inside Blender, in the folders called ``inside``, are checked too. They run in every
@@ -61,12 +61,13 @@ _PARTS = (
 )  # of the project that have packages in Blender
 _MARK = "ANSWERS:"
 _SECONDS = 120
-# Runs in Blender: each text of code, from one state, and what it ends in.
+# Runs in Blender: each text of code, from the state that Blender starts in, and what it ends in.
 _RUN = """
 import json, sys
 import bpy
 answers = []
 for code in json.loads({codes!r}):
+    bpy.ops.wm.read_factory_settings()
     try:
         exec(code, {{"bpy": bpy}})
         answers.append("")
@@ -162,14 +163,14 @@ def ask_blender(executable: str, codes: Iterable[str]) -> dict[str, str]:
 
 def proof_of(path: str, finding: Finding, rows: list[Broken]) -> tuple[str, str]:
     """The code that proves a finding, and what it must say; empty for none."""
+    for row in rows:
+        if finding.symbol == row.symbol and path in row.scripts:
+            return row.code, row.says
     if finding.rule == "never-true":
         owner, _, value = finding.symbol.rpartition(":")
         cls, _, name = owner.rpartition(".")
         code = f"{cls}.bl_rna.properties[{name!r}].enum_items[{value!r}]"
         return code, f"KeyError: 'bpy_prop_collection[key]: key \"{value}\" not found'"
-    for row in rows:
-        if finding.symbol == row.symbol and path in row.scripts:
-            return row.code, row.says
     return "", ""
 
 

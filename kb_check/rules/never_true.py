@@ -96,7 +96,7 @@ def _never_reached(script: Script) -> Iterator[Finding]:
             RULE.id, RULE.severity, script.span(row.node),
             f"RNA lists {row.value!r} for `{symbol.path}`, and nothing comes to have it: the comparison never matches "
             f"it.{told}",
-            symbol.path, tuple(f"{symbol.path}:{name}" for name in meant),
+            f"{symbol.path}:{row.value}", tuple(f"{symbol.path}:{name}" for name in meant),
             Fix(f"Write {meant[0]}", (edit,)) if edit else None,
         )  # fmt: skip
 
