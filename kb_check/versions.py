@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kb_check.cache import ResultCache
-    from kb_check.findings import Finding
+    from kb_check.findings import Finding, Severity
     from kb_check.project import Group
     from kb_check.report import Report
 
@@ -27,8 +27,8 @@ _NARROWEST = 6  # columns of a version in the table
 
 
 @dataclass(frozen=True, slots=True)
-class Break:
-    """Something that some Blenders refuse: the finding of the first of them, in a file."""
+class FoundIn:
+    """What is found in a file for some Blenders: the finding of the first of them."""
 
     path: str
     finding: Finding
@@ -60,17 +60,24 @@ class VersionsReport:
                 found.setdefault(file.name, {})[report.blender] = count
         return found
 
-    def breaks(self) -> list[Break]:
+    def breaks(self) -> list[FoundIn]:
         """Everything that is an error in one version at least, by file and line."""
+        return self._found("error")
+
+    def warnings(self) -> list[FoundIn]:
+        """Everything that is a warning in one version at least, by file and line: it may break there."""
+        return self._found("warning")
+
+    def _found(self, severity: Severity) -> list[FoundIn]:
         first: dict[tuple[Any, ...], tuple[str, Finding]] = {}
         where: dict[tuple[Any, ...], list[str]] = {}
         for report in self.reports:
             for file, finding in report.findings:
-                if finding.severity == "error":
+                if finding.severity == severity:
                     key = file.name, finding.span, finding.rule
                     first.setdefault(key, (file.name, finding))
                     where.setdefault(key, []).append(report.blender)
-        rows = [Break(name, finding, tuple(where[key])) for key, (name, finding) in first.items()]
+        rows = [FoundIn(name, finding, tuple(where[key])) for key, (name, finding) in first.items()]
         return sorted(rows, key=lambda row: (row.path, row.finding.span.line, row.finding.span.column))
 
     def totals(self) -> dict[str, int]:
@@ -106,7 +113,7 @@ class VersionsReport:
     # Ways to write it.
 
     def text_lines(self) -> Iterator[str]:
-        """A table of files and versions, what breaks where, and the verdict."""
+        """A table of files and versions, what breaks where, what may break, and the verdict."""
         errors = self.errors()
         affected = {name: counts for name, counts in errors.items() if any(counts.values())}
         width = max((len(name) for name in affected), default=4)
@@ -120,16 +127,22 @@ class VersionsReport:
                 )
                 yield f"{name.ljust(width)}{cells}"
             yield ""
-            for row in self.breaks():
-                span = row.finding.span
-                where = _ranges(row.versions, self.versions)
-                place = f"{row.path}:{span.line}:{span.column + 1}"
-                yield f"{place}: in {where}: [{row.finding.rule}] {' '.join(row.finding.message.split())}"
+            yield from map(self._line, self.breaks())
+            yield ""
+        if warnings := self.warnings():
+            yield f"{len(warnings):,} warning{'' if len(warnings) == 1 else 's'}:"
+            yield from map(self._line, warnings)
             yield ""
         clean = len(errors) - len(affected)
         if affected and clean:
             yield f"{clean:,} more file{'' if clean == 1 else 's'} without errors."
         yield self.verdict()
+
+    def _line(self, row: FoundIn) -> str:
+        span = row.finding.span
+        where = _ranges(row.versions, self.versions)
+        place = f"{row.path}:{span.line}:{span.column + 1}"
+        return f"{place}: in {where}: [{row.finding.rule}] {' '.join(row.finding.message.split())}"
 
     def as_json(self) -> dict[str, Any]:
         """The same for programs. Lines and columns count from 1."""
@@ -140,19 +153,8 @@ class VersionsReport:
             "errors": self.totals(),
             "files": [{"path": name, "errors": counts} for name, counts in sorted(self.errors().items())],
             "unchecked": self.faults,
-            "breaks": [
-                {
-                    "path": row.path,
-                    "line": row.finding.span.line,
-                    "column": row.finding.span.column + 1,
-                    "rule": row.finding.rule,
-                    "symbol": row.finding.symbol,
-                    "instead": list(row.finding.instead),
-                    "message": row.finding.message,
-                    "versions": list(row.versions),
-                }
-                for row in self.breaks()
-            ],
+            "breaks": [_as_json(row) for row in self.breaks()],
+            "warnings": [_as_json(row) for row in self.warnings()],
         }
 
 
@@ -182,6 +184,19 @@ def check_versions(  # noqa: PLR0913 - what is checked, and how
         run = Run(project, configuration or Configuration(), list(groups), list(faults))
         reports.append(run.check(version, progress))
     return VersionsReport(tuple(reports))
+
+
+def _as_json(row: FoundIn) -> dict[str, Any]:
+    return {
+        "path": row.path,
+        "line": row.finding.span.line,
+        "column": row.finding.span.column + 1,
+        "rule": row.finding.rule,
+        "symbol": row.finding.symbol,
+        "instead": list(row.finding.instead),
+        "message": row.finding.message,
+        "versions": list(row.versions),
+    }
 
 
 def base_files(versions: Iterable[str], home: Path) -> dict[str, Path]:

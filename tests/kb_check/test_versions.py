@@ -75,6 +75,20 @@ def test_json_has_the_same(base: Path) -> None:
     assert (row["line"], row["column"], row["versions"]) == (2, 20, ["5.0"])
 
 
+def test_what_may_break_is_told_beside_what_breaks(base: Path) -> None:
+    risky = b'import bpy\nbpy.data.objects.new("Door", None).animation_data.action\n'
+    (report,) = checked(base, (LoadedFile("door.py", risky),)).reports
+    (warned,) = report.files[0].findings
+    both = VersionsReport((replace(report, blender="4.5"), report))
+    assert (warned.severity, both.breaks(), both.runs_in()) == ("warning", [], both.versions)
+    (row,) = both.as_json()["warnings"]
+    assert (row["line"], row["rule"], row["versions"]) == (2, warned.rule, both.versions)
+    lines = list(both.text_lines())
+    assert lines[:2] == ["1 warning:", f"door.py:2:{row['column']}: in {' and '.join(both.versions)}: "
+                         f"[{warned.rule}] {warned.message}"]  # fmt: skip
+    assert lines[-1] == both.verdict() == f"Nothing found that breaks in {' and '.join(both.versions)}."
+
+
 @pytest.mark.parametrize("version", ["2.49", "five", ""])
 def test_a_version_without_a_base_is_said(base: Path, version: str) -> None:
     with pytest.raises(UserError):
