@@ -65,6 +65,7 @@ _WORDS = {
     "boolean": "True or False", "int": "an int", "float": "a number", "string": "a str", "enum": "a str",
     "enum or set": "a str", "set": "a set of str",
 }  # fmt: skip
+_BYTES = "BYTE_STRING"
 _ITEM_WORDS = {"boolean": "bool", "int": "int", "float": "float"}
 # Arrays whose size is not the one that RNA declares.
 CHANGING_ARRAYS = frozenset({"bpy.types.FModifierGenerator.coefficients", "bpy.types.MeshPolygon.vertices"})
@@ -110,7 +111,8 @@ def _scalar_misfit(  # noqa: PLR0911 - one return a type
         value = number(script, node)
         if taker.kind == "boolean" and kind.kind == "int" and value not in {None, 0, 1}:
             return Misfit(_takes(taker), f"{value}")
-        fits = kind.kind in _TAKES[taker.kind] or (kind.kind == "bytes" and taker.subtype == "BYTE_STRING")
+        takes = _TAKES[taker.kind] if taker.subtype != _BYTES else {"bytes"}
+        fits = kind.kind in takes
         return None if fits else Misfit(_takes(taker), shown(script, node, given))
     if isinstance(kind, Sequence) and kind.kind == "set" and taker.kind in {"set", "enum or set"}:
         return None
@@ -204,4 +206,4 @@ def _whole_misfit(script: Script, node: ast.expr, kind: Type, length: int, takes
 def _takes(taker: Taker) -> str:
     if taker.kind == "pointer":
         return f"an instance of `{taker.target}`"
-    return _WORDS[taker.kind]
+    return "bytes" if taker.subtype == _BYTES else _WORDS[taker.kind]

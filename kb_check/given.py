@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, members
 from kb_build.symbols.api_names import STRUCT
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.paths import plain_path
 from kb_check.calls import calls_not_ready_for
 from kb_check.own_classes import own_classes
 from kb_check.raised import REFUSES
@@ -72,7 +73,7 @@ class Given:
 @once_per_script
 def given_values(script: Script) -> list[Given]:
     """Every value that is surely assigned to a property that takes one, or passed to a function or an operator."""
-    return [*_assignments(script), *_arguments(script)]
+    return [*_assignments(script), *_arguments(script), *_settings_of_buttons(script)]
 
 
 @once_per_script
@@ -141,6 +142,22 @@ def _arguments(script: Script) -> Iterator[Given]:
         if symbol.kind != "class" or is_vector:
             for parameter, argument in call.arguments():
                 yield Given(argument, (parameter_taker(script, symbol, parameter, is_rna=is_rna),))
+
+
+def _settings_of_buttons(script: Script) -> Iterator[Given]:
+    """What buttons and keys call operators with: ``layout.operator("object.delete").use_global = True``."""
+    for row in script.resolutions("keyword"):
+        if not isinstance(row.node, ast.Attribute) or not row.sure or row.is_ready_for(*REFUSES):
+            continue
+        value = assigned(row.statement, row.node)
+        symbols = [script.api.symbols.symbol(plain_path(path)) for path in row.symbols]
+        takers = [
+            parameter_taker(script, symbol, parameter, is_rna=True)
+            for symbol in symbols
+            if symbol and (parameter := symbol.parameter(row.value))
+        ]
+        if value is not None and takers and not row.missing:
+            yield Given(value, tuple(takers))
 
 
 def is_of_instance(script: Script, node: ast.AST) -> bool:

@@ -91,6 +91,23 @@ def _once_bound(script: Script) -> dict[str, ast.expr]:
     return {name: value for name, value in values.items() if times[name] == 1}
 
 
+@once_per_script
+def lists_left_alone(script: Script) -> dict[str, ast.expr]:
+    """Name → the list that its only assignment gives it, where nothing is done to it by its name."""
+    changed = {
+        node.value.id for node in script.all(ast.Attribute, ast.Subscript) if isinstance(node.value, ast.Name)
+    }
+    changed |= {node.target.id for node in script.all(ast.AugAssign) if isinstance(node.target, ast.Name)}
+    times = times_bound(script)
+    return {
+        target.id: node.value
+        for node in script.all(ast.Assign)
+        if isinstance(node.value, ast.List)
+        for target in node.targets
+        if isinstance(target, ast.Name) and times[target.id] == 1 and target.id not in changed
+    }
+
+
 def bound_names(node: ast.AST) -> list[str]:
     """The names that a node binds, or makes another scope's."""
     match node:

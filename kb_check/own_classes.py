@@ -38,13 +38,14 @@ class OwnClass:
     """A class of the script that derives from a type which Blender registers.
 
     ``path`` is that type. ``bodies`` are its own body and those that it inherits from, in the order in which Python
-    looks; ``is_closed`` says that there are no others. ``is_final``: the script derives no class from it, or registers
-    it all the same; ``is_registered``: the script surely does.
+    looks, ``family`` the script's classes that they are of; ``is_closed`` says that there are no others. ``is_final``:
+    the script derives no class from it, or registers it all the same; ``is_registered``: the script surely does.
     """
 
     node: ast.ClassDef
     path: str
     bodies: tuple[Body, ...]
+    family: tuple[ast.ClassDef, ...]
     is_closed: bool
     is_final: bool
     is_registered: bool
@@ -68,11 +69,14 @@ class OwnClass:
 
     def attributes(self) -> Iterator[tuple[str, ast.expr]]:
         """The attributes that are surely given, each with its value."""
-        names = {name: None for body in self.bodies for name in body}
-        for name in names:
+        for name in self.names():
             statement = self.given(name)
             if isinstance(statement, (ast.Assign, ast.AnnAssign)) and statement.value is not None:
                 yield name, statement.value
+
+    def names(self) -> list[str]:
+        """The names of all that the bodies give, first those of its own."""
+        return list({name: None for body in self.bodies for name in body})
 
     @property
     def label(self) -> str:
@@ -100,7 +104,7 @@ def own_classes(script: Script) -> list[OwnClass]:
         if family.path:
             found.append(
                 OwnClass(
-                    node, family.path, tuple(reversed(family.bodies)), family.is_closed,
+                    node, family.path, tuple(reversed(family.bodies)), tuple(reversed(family.nodes)), family.is_closed,
                     is_registered or node.name not in parents, is_registered,
                 )
             )  # fmt: skip
@@ -116,6 +120,7 @@ class _Family:
         self._seen: set[ast.ClassDef] = set()
         self.path = ""
         self.bodies: list[Body] = []
+        self.nodes: list[ast.ClassDef] = []
         self.is_closed = True
 
     def add(self, node: ast.ClassDef, depth: int = 0) -> None:
@@ -130,6 +135,7 @@ class _Family:
                 self.is_closed = self.is_closed and isinstance(base, ast.Name) and base.id == "object"
             elif parent not in self._seen:
                 self.add(parent, depth + 1)
+        self.nodes.append(node)
         self.bodies.append(members_of(node))
 
     def _add_api_class(self, cls: str) -> None:

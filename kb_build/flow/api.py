@@ -44,7 +44,7 @@ from kb_build.symbols.api_names import COLLECTION, GROUPS, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.math_classes import math_class
 from kb_build.symbols.object_data import data_class
-from kb_build.symbols.paths import is_socket
+from kb_build.symbols.paths import argument_of, is_socket, plain_path
 from kb_build.symbols.python_values import is_new_list
 
 if TYPE_CHECKING:
@@ -276,6 +276,13 @@ class Api:
         element: Type = scalar if len(symbol.array) == 1 else Sequence("array", scalar)
         return Instance(ARRAY, ((ELEMENT, element),)) if size else Sequence("array", scalar)
 
+    @staticmethod
+    def keyword_type(path: str, parameter: Parameter) -> Type:
+        """The type of what an operator is called with by a keyword; UNKNOWN for what has members or parts."""
+        if parameter.type == "enum":
+            return Plain("str", None, FromProperty(f"{path}({parameter.name})"))
+        return _SCALARS.get(parameter.type, UNKNOWN)
+
     def read_type(self, text: str, scope: str) -> Type:
         """The type that a text spells, seen from a symbol."""
         return read_type(text, lambda name: self.class_named(name, scope)) if text else UNKNOWN
@@ -432,12 +439,8 @@ class Api:
 
     def values_of(self, path: str) -> tuple[str, ...]:
         """The values of an enumeration, given by its property or by ``function(parameter)``."""
-        symbol, parameter = self.symbols.symbol(path), ""
-        if symbol is None:
-            owner, _, parameter = path.removesuffix(")").partition("(")
-            symbol = self.symbols.symbol(owner)
-        rows = [symbol] if symbol and not parameter else symbol.parameters if symbol else ()
-        found = next((row for row in rows if not parameter or row.name == parameter), None)
+        symbol, argument = self.symbols.symbol(plain_path(path)), argument_of(path)
+        found = symbol.parameter(argument) if symbol and argument else symbol
         return tuple(item.identifier for item in found.enum_items) if found else ()
 
     def socket_type(self, symbol: Symbol, *, fixed: bool = True) -> Type:

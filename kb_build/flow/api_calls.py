@@ -13,7 +13,9 @@ from kb_build.flow.facts import (
     CLASS_NAMES,
     DERIVED_BY_SCRIPTS,
     NAME_OF_PROPERTY,
+    OF_OPERATOR,
     OPEN_CALLS,
+    OPERATOR_PROPERTIES,
 )
 from kb_build.flow.script_calls import ScriptCalls
 from kb_build.flow.types import (
@@ -40,7 +42,7 @@ from kb_build.flow.types import (
     union,
     without_none,
 )
-from kb_build.symbols.api_names import OBJECT
+from kb_build.symbols.api_names import OBJECT, OPERATORS
 from kb_build.symbols.api_names import TYPES as T
 
 if TYPE_CHECKING:
@@ -63,6 +65,7 @@ _PROPERTIES: dict[str, Type] = {
     "BoolVectorProperty": Sequence("array", BOOL),
 }  # fmt: skip
 _CONVERTING = "bpy.ops.object.convert"
+_KEY = f"{T}KeyMapItem"
 _OPERATOR_RESULT = Sequence("set", STR)
 
 
@@ -181,6 +184,11 @@ class ApiCalls(ScriptCalls):
             return (
                 replace(result, traits=(("data", data),)) if data is not UNKNOWN and data != NONE else result
             )
+        if result.cls == OPERATOR_PROPERTIES:
+            return self._set_up(result, given.get("operator", UNKNOWN))
+        if result.cls == _KEY:
+            properties = self._set_up(Instance(OPERATOR_PROPERTIES), given.get("idname", UNKNOWN))
+            return replace(result, traits=(("properties", properties),))
         if cls := self.api.class_of_maker(result.cls, symbol.name):
             return replace(result, cls=cls)
         is_open = not DERIVED_BY_SCRIPTS.isdisjoint(self.api.lineage(result.cls))
@@ -193,6 +201,16 @@ class ApiCalls(ScriptCalls):
                     replace(result, cls=cls or result.cls, sure=result.sure and bool(cls or not is_open))
                 )
         return union(found) if found else result
+
+    @staticmethod
+    def _set_up(result: Instance, name: Type) -> Type:
+        """What an operator is called with by a button, or by a key, that names it."""
+        paths = [_operator_path(text) for text in literal_texts(name)]
+        return (
+            union(replace(result, traits=((OF_OPERATOR, Operator(path)),)) for path in paths)
+            if paths
+            else result
+        )
 
     def _names(self, callee: Function, name: str, call: ReadCall) -> None:
         """Records texts that name a property: ``layout.prop(cloth, "quality")``, ``ob.keyframe_insert("location")``."""
@@ -226,10 +244,7 @@ class ApiCalls(ScriptCalls):
     def _named_operator(self, node: ast.expr, kind: Type) -> None:
         text = literal_text(kind)
         if text and isinstance(node, ast.Constant):
-            module, of_class, name = text.partition("_OT_")
-            if not of_class:
-                module, _, name = text.partition(".")
-            path = f"bpy.ops.{module.lower()}.{name}"  # Blender takes the module in capitals too
+            path = _operator_path(text)
             known = self.api.symbols.symbol(path) is not None
             if path in self.own_operators or self.is_there_at_times(path):
                 return
@@ -275,6 +290,14 @@ class ApiCalls(ScriptCalls):
             self._keywords(symbol, call.node)
             self._values(symbol, call.node)
         return Instance(callee.cls)
+
+
+def _operator_path(text: str) -> str:
+    """The path of an operator that a text names: ``object.delete``, or ``OBJECT_OT_delete``."""
+    module, of_class, name = text.partition("_OT_")
+    if not of_class:
+        module, _, name = text.partition(".")
+    return f"{OPERATORS}{module.lower()}.{name}"  # Blender takes the module in capitals too
 
 
 def _raises_instead(symbol: Symbol, call: ast.Call) -> bool:

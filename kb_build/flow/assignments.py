@@ -177,8 +177,9 @@ class Assignments(Guards, Annotations):
         found = self.attribute(owner, target.attr)
         if found.symbols or found.missing or found.possible:
             missing = () if is_expected else found.missing
+            use = "store" if found.use == "attribute" else found.use
             self.resolve(
-                target, "store", target.attr, found.symbols, missing, found.possible,
+                target, use, target.attr, found.symbols, missing, found.possible,
                 sure=found.sure, guarded=self.here.scope.state.doubts_members_of(target.value),
             )  # fmt: skip
         if target.attr in DISCRIMINANTS:
@@ -207,6 +208,8 @@ class Assignments(Guards, Annotations):
                 del chains[text]
 
     def _store_on_instance(self, owner: LocalInstance, name: str, kind: Type) -> None:
+        if self.is_declared_in(owner.number, name):
+            return
         if self.class_attribute(owner.number, name) is None:
             bases, _ = self.api_bases(owner.number)
             if any(self.api.member(base, name) for base in bases):

@@ -238,6 +238,13 @@ class Core:
         found = self.here.resolutions.get(node) if node is not None else None
         return found is not None and any(path.startswith("bpy.props.") for path in found.symbols)
 
+    def is_declared_in(self, number: int, name: str) -> bool:
+        """Whether a class, or one that it derives from, declares a property by bpy.props."""
+        return any(
+            isinstance(kind, LocalClass) and name in self.classes[kind.number].declared
+            for kind in self.ancestors(number)
+        )
+
     # Definitions.
 
     def define_function(

@@ -70,6 +70,12 @@ class Defining(Expressions):
         with self.at(replace(self.here, scope=scope)):
             self.read_body(node.body)
         definition = self.classes[number]
+        definition.declared = frozenset(
+            statement.target.id
+            for statement in node.body
+            if isinstance(statement, ast.AnnAssign) and isinstance(statement.target, ast.Name)
+            if self.is_declared(statement.annotation)
+        )
         self._add_to_api(node.name, number, scope.state.names.get("bl_idname"))
         for name, kind in scope.ever.items():
             definition.bind(name, general(kind) if isinstance(kind, Plain) else kind)

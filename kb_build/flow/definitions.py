@@ -59,11 +59,15 @@ class FunctionDefinition:
 
 @dataclass(slots=True)
 class ClassDefinition:
-    """A class of the script; ``attributes`` joins what its body, its annotations and its methods bind."""
+    """A class of the script; ``attributes`` joins what its body, its annotations and its methods bind.
+
+    Those that are ``declared`` by bpy.props keep their types, whatever is assigned to them.
+    """
 
     node: ast.ClassDef
     bases: tuple[Type, ...]
     attributes: dict[str, Type] = field(default_factory=dict[str, Type])
+    declared: frozenset[str] = frozenset()
     changes: int = 0
 
     def bind(self, name: str, kind: Type) -> None:

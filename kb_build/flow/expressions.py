@@ -42,6 +42,7 @@ from kb_build.flow.types import (
     without_none,
 )
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.paths import argument_of, plain_path
 from kb_build.symbols.unlisted import FEWEST_VALUES, MORE_VALUES, STAND_INS
 
 if TYPE_CHECKING:
@@ -133,7 +134,7 @@ class Expressions(Members):
         if found.symbols or found.possible or (found.missing and known is None):
             missing = found.missing if known is None else ()
             self.resolve(
-                node, "attribute", node.attr, found.symbols, missing, found.possible,
+                node, found.use, node.attr, found.symbols, missing, found.possible,
                 sure=found.sure, guarded=self.here.scope.state.doubts_members_of(node.value),
             )  # fmt: skip
         if known is not None:
@@ -512,23 +513,24 @@ class Expressions(Members):
         having: list[str] = []
         lacking: list[str] = []
         unsure = False
-        for path in sources:
+        for source in sources:
+            path, argument = plain_path(source), parameter or argument_of(source)
             symbol = self.api.symbols.symbol(path)
             if symbol is None:
                 continue
             items = symbol.enum_items
             computed = symbol.enum_computed
-            if parameter:
-                found = next((row for row in symbol.parameters if row.name == parameter), None)
+            if argument:
+                found = symbol.parameter(argument)
                 items, computed = (found.enum_items, found.is_open) if found else ((), False)
-            name = f"{path}({parameter})" if parameter else path
+            name = f"{path}({argument})" if argument else path
             is_listed = any(item.identifier == value for item in items) or value in MORE_VALUES.get(name, ())
             are_classes = bool(items) and all(self.api.is_class(T + item.identifier) for item in items)
             # Of classes, those of add-ons are taken as well.
             is_listed = is_listed or (are_classes and not self.api.is_class(T + value))
             # A function's only value is meant, unless it stands in for others.
             is_judged = len(items) >= FEWEST_VALUES or (
-                bool(parameter)
+                bool(argument)
                 and symbol.kind == "function"
                 and not STAND_INS.issuperset(item.identifier for item in items)
             )

@@ -79,6 +79,8 @@ OPEN_CLASSES = (
     "bpy.types.AnyType", "bpy.types.UnknownType", "bpy.types.NodesModifierProperties",
     "bpy.types.Gizmo", "bpy.utils.previews.ImagePreviewCollection",
 )  # fmt: skip
+# What a button, or a key, calls an operator with. The trait names the operator, where a script does.
+OPERATOR_PROPERTIES, OF_OPERATOR = "bpy.types.OperatorProperties", "operator"
 # Classes that scripts derive their own from, which a value declared so may be.
 DERIVED_BY_SCRIPTS = frozenset(
     {

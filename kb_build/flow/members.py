@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from kb_build.flow.api import ARRAY
 from kb_build.flow.core import ANY, Core
@@ -14,6 +14,7 @@ from kb_build.flow.facts import (
     LAYER_ITEM,
     NODES_THAT_KEEP_NAMES,
     NODES_WITH_SOCKETS_OF_THEIR_OWN,
+    OF_OPERATOR,
     OPEN_CLASSES,
     VERSION,
 )
@@ -68,7 +69,8 @@ _VECTORS = frozenset({"mathutils.Vector", "mathutils.Color", "mathutils.Euler", 
 class Lookup:
     """What an attribute was found to be, for each member of a union in turn (see types.Resolution).
 
-    One is made for each attribute that is read: ``list`` is called in a tenth of the time of ``list[Type]``.
+    One is made for each attribute that is read: ``list`` is called in a tenth of the time of ``list[Type]``. Its
+    ``use`` is ``keyword`` where a button's operator is set up.
     """
 
     types: list[Type] = field(default_factory=list)
@@ -76,6 +78,7 @@ class Lookup:
     missing: list[str] = field(default_factory=list)
     possible: list[str] = field(default_factory=list)
     sure: bool = True
+    use: Literal["attribute", "keyword"] = "attribute"
 
     @property
     def type(self) -> Type:
@@ -126,6 +129,9 @@ class Members(Core):
         if (extra := self._registered(kind.cls, name)) is not None:
             found.types.append(extra)
             return
+        if isinstance(operator := kind.trait(OF_OPERATOR), Operator):
+            self._of_button(operator, name, found)
+            return
         if below := self.api.below(kind.cls, name):
             found.possible += [member.symbol.path for _, member in below]
             kinds = [
@@ -144,6 +150,17 @@ class Members(Core):
             found.types.append(self._held(self.api.successor_type(kind.cls, name), kind, name))
             return
         found.types.append(UNKNOWN)
+
+    def _of_button(self, operator: Operator, name: str, found: Lookup) -> None:
+        """What a button calls an operator with: one of its keywords."""
+        symbol = self.api.symbols.symbol(operator.path)
+        parameter = symbol.parameter(name) if symbol else None
+        found.use = "keyword"
+        if parameter:
+            found.symbols.append(f"{operator.path}({name})")
+        elif symbol and not _is_pythons(name):
+            found.missing.append(operator.path)
+        found.types.append(self.api.keyword_type(operator.path, parameter) if parameter else UNKNOWN)
 
     def is_open(self, cls: str) -> bool:
         """Whether instances of a class have members that its symbols do not tell."""

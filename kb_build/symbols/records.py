@@ -309,6 +309,10 @@ class Symbol:
         """What calls give by place: all parameters but what a method is read from."""
         return [parameter for parameter in self.parameters if parameter.name not in {"self", "cls"}]
 
+    def parameter(self, name: str) -> Parameter | None:
+        """The parameter of a name."""
+        return next((parameter for parameter in self.parameters if parameter.name == name), None)
+
     @property
     def has_empty_signature(self) -> bool:
         """Whether it is known to take no arguments, and is not one whose arguments are unknown."""

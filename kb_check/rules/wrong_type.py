@@ -45,6 +45,7 @@ from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.given import class_values, given_values
 from kb_check.literals import items, set_of
 from kb_check.misfits import describe
+from kb_check.own_properties import given_to_own
 from kb_check.python_paths import is_path
 from kb_check.rule import Rule
 from kb_check.tried import is_tried
@@ -67,7 +68,7 @@ _LONGEST_INT = 2**31
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for given in (*given_values(script), *class_values(script)):
+    for given in (*given_values(script), *class_values(script), *given_to_own(script)):
         if all(taker.kind == "string" for taker in given.takers) and is_path(script, given.node):
             yield _path_given(script, given)
             continue

@@ -1,0 +1,159 @@
+"""A property that the script declares itself, used for what it is not.
+
+```python
+class Settings(bpy.types.PropertyGroup):
+    mode: bpy.props.EnumProperty(items=[("FAST", "Fast", ""), ("GOOD", "Good", "")])
+    parts: bpy.props.CollectionProperty(type=Part)
+
+
+context.scene.settings.mode = "BEST"  # reported: one of the items
+context.scene.settings.parts = []  # reported: read-only
+context.scene.settings.modes  # reported: mode
+context.scene.settings.last = 3  # reported: lost as soon as the settings are read again
+bpy.ops.object.grow(cuont=3)  # reported: a keyword that the script's operator lacks
+layout.operator("object.grow").cuont = 3  # reported
+```
+
+Not reported: classes that derive from what is not seen, or that are not surely registered; enumerations whose items are
+computed; what a script sets, or asks for, by a name in quotes.
+"""
+
+from __future__ import annotations
+
+import ast
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+from kb_build.flow.types import literal_texts
+from kb_check.findings import Finding, Fix
+from kb_check.made_here import attributes, stored_names
+from kb_check.own_properties import uses
+from kb_check.rule import Rule
+from kb_check.script import once_per_script
+from kb_check.tried import is_tried
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+
+    from kb_check.findings import Severity
+    from kb_check.own_declarations import OwnProperty
+    from kb_check.own_properties import OwnProperties, Use
+    from kb_check.script import Script
+
+_GROUP = "bpy.types.PropertyGroup"
+_MOST_NAMES = 8
+_NEAR = 0.75  # of difflib
+PYTHONS = frozenset({"bl_rna", "rna_type", "id_data", "name", "layout"})
+# What is done to a property that nothing is assigned to, by its kind.
+_INSTEAD = {"collection": "`add`, `remove` and `clear` change it", "pointer": "set its own properties"}
+_COMPUTED = "it has `get`, and no `set`"
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    compared = _compared(script)
+    for use in uses(script):
+        if is_tried(script, use.node if isinstance(use.node, ast.Attribute) else use.node.value):
+            continue
+        if use.found is None:
+            if use.of and _lacks(script, use, use.of):
+                yield from _absent(script, use, use.of)
+        elif use.found.is_fixed and use.value is not None and not use.is_called:
+            told = f"`{use.found.path}` is read-only: {_INSTEAD.get(use.found.kind, _COMPUTED)}."
+            yield Finding(RULE.id, "error", script.name_span(use.node), told, use.found.path)
+        elif use.found.items is not None:
+            if use.value is not None:
+                yield from _values(script, use.found, use.value, use.found.items)
+            elif (other := compared.get(use.node)) is not None:
+                yield from _values(script, use.found, other, use.found.items, is_compared=True)
+
+
+def _lacks(script: Script, use: Use, of: OwnProperties) -> bool:
+    """Whether nothing gives an attribute, or a keyword, to what the script declares."""
+    if not of.is_whole or use.name.startswith("__") or use.name in PYTHONS:
+        return False
+    if isinstance(use.node, ast.keyword):
+        return True
+    if script.api.member(of.own.path, use.name) or use.name in _texts(script):
+        return False
+    return use.is_called or use.is_stored or use.name not in stored_names(script)
+
+
+def _absent(script: Script, use: Use, of: OwnProperties) -> Iterator[Finding]:
+    near = get_close_matches(use.name, of.properties, 1, _NEAR)
+    names = [name for name, one in of.properties.items() if one.kind]
+    told = f"Closest: `{near[0]}`." if near else f"It declares {_listed(names)}." if names else ""
+    edit = script.renamed(use.node, near[0]) if near else None
+    fix = Fix(f"Write {near[0]}", (edit,)) if edit else None
+    severity: Severity = "error"
+    if use.is_called:
+        what = f"`{of.operator}`, which this script makes, takes no `{use.name}`."
+    elif not use.is_stored:
+        what = f"`{of.own.node.name}` has no `{use.name}`."
+    elif of.own.path == _GROUP and not _is_read_beside(script, use.node):
+        what = f"`{of.own.node.name}` declares no `{use.name}`: what is set is lost when it is read again."
+        severity = "warning"
+    else:
+        return
+    message = f"{what} {told}".rstrip()
+    yield Finding(RULE.id, severity, script.name_span(use.node), message, of.own.path, (), fix)
+
+
+def _is_read_beside(script: Script, node: ast.AST) -> bool:
+    """Whether the very thing that an attribute is set on is asked for it, as long as its name holds it."""
+    if not isinstance(node, ast.Attribute) or not isinstance(node.value, ast.Name):
+        return False
+    return any(
+        isinstance(other.ctx, ast.Load)
+        and isinstance(other.value, ast.Name)
+        and other.value.id == node.value.id
+        for other in attributes(script).get(node.attr, ())
+    )
+
+
+def _values(
+    script: Script, found: OwnProperty, node: ast.expr, items: tuple[str, ...], *, is_compared: bool = False
+) -> Iterator[Finding]:
+    parts = node.elts if isinstance(node, ast.Set) else [node]
+    for part in parts:
+        kind = script.type_of(part)
+        texts = [*literal_texts(kind)] if kind is not None else []
+        if not texts or any(text in items for text in texts):
+            continue
+        ends = " The comparison never matches it." if is_compared else ""
+        near = get_close_matches(texts[0], items, 1, _NEAR)
+        edit = script.renamed(part, near[0]) if near and isinstance(part, ast.Constant) else None
+        yield Finding(
+            RULE.id, "warning" if is_compared else "error", script.span(part),
+            f"{texts[0]!r} is none of the items of `{found.path}`: it takes {_listed(items)}.{ends}", found.path, (),
+            Fix(f"Write {near[0]}", (edit,)) if near and edit else None,
+        )  # fmt: skip
+
+
+@once_per_script
+def _compared(script: Script) -> dict[ast.AST, ast.expr]:
+    """What is compared with a text, or looked up among several → that."""
+    found: dict[ast.AST, ast.expr] = {}
+    for node in script.all(ast.Compare):
+        match node:
+            case ast.Compare(ops=[ast.Eq() | ast.NotEq()], comparators=[ast.Constant() as other]):
+                found[node.left] = other
+            case ast.Compare(
+                ops=[ast.In() | ast.NotIn()], comparators=[ast.Set() | ast.Tuple() | ast.List() as several]
+            ):
+                found[node.left] = ast.Set(several.elts)
+            case _:
+                pass
+    return found
+
+
+@once_per_script
+def _texts(script: Script) -> frozenset[str]:
+    return frozenset(node.value for node in script.all(ast.Constant) if isinstance(node.value, str))
+
+
+def _listed(names: Collection[str]) -> str:
+    shown = ", ".join(f"`{name}`" for name in [*names][:_MOST_NAMES])
+    return f"{shown} … ({len(names)} in all)" if len(names) > _MOST_NAMES else shown
+
+
+RULE = Rule("own-property", "error", "A property that the script declares, used for what it is not", _check)

@@ -1,0 +1,202 @@
+"""What a script does with properties that it declares itself: Blender refuses what is found, and nothing else."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from statements_in_blender import run_statements
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import Check
+
+    from kb_check.checker import Checker
+
+pytestmark = pytest.mark.blender
+
+_RULES = ["own-property", "wrong-type", "unknown-attribute", "unknown-keyword", "unknown-value"]
+_CLASSES = """\
+import bpy
+KINDS = [("FIRST", "First", ""), ("SECOND", "Second", "")]
+class Part(bpy.types.PropertyGroup):
+    size: bpy.props.FloatProperty()
+class Settings(bpy.types.PropertyGroup):
+    parts: bpy.props.CollectionProperty(type=Part)
+    one: bpy.props.PointerProperty(type=Part)
+    kind: bpy.props.EnumProperty(items=KINDS)
+    several: bpy.props.EnumProperty(items=KINDS, options={"ENUM_FLAG"})
+    computed: bpy.props.EnumProperty(items=lambda self, context: KINDS)
+    is_on: bpy.props.BoolProperty()
+    count: bpy.props.IntProperty(min=0, max=3)
+    size: bpy.props.FloatProperty()
+    title: bpy.props.StringProperty()
+    raw: bpy.props.StringProperty(subtype="BYTE_STRING")
+    offset: bpy.props.FloatVectorProperty()
+    pair: bpy.props.IntVectorProperty(size=2)
+    flags: bpy.props.BoolVectorProperty(size=3)
+    matrix: bpy.props.FloatVectorProperty(size=(4, 4), subtype="MATRIX")
+    target: bpy.props.PointerProperty(type=bpy.types.Object)
+    total: bpy.props.IntProperty(get=lambda self: 1)
+    kept: bpy.props.IntProperty(get=lambda self: 1, set=lambda self, value: None)
+    def doubled(self):
+        return self.count * 2
+class OBJECT_OT_grow(bpy.types.Operator):
+    bl_idname = "object.grow"
+    bl_label = "Grow"
+    amount: bpy.props.IntProperty()
+    kind: bpy.props.EnumProperty(items=KINDS)
+    def execute(self, context):
+        return {"FINISHED"}
+class Alike(bpy.types.PropertyGroup):
+    def __getattr__(self, name):
+        return 1
+for cls in (Part, Settings, OBJECT_OT_grow, Alike):
+    bpy.utils.register_class(cls)
+bpy.types.Scene.settings = bpy.props.PointerProperty(type=Settings)
+bpy.types.Scene.alike = bpy.props.PointerProperty(type=Alike)
+bpy.types.Object.weight = bpy.props.FloatProperty()
+bpy.types.Object.rank = bpy.props.EnumProperty(items=KINDS)
+s = bpy.context.scene.settings
+ob = bpy.context.object
+part = s.parts.add()
+op = bpy.context.window_manager.operator_properties_last("object.grow")
+"""
+_LINES = [
+    "s.kind = 'THIRD'",
+    "s.kind = 'SECOND'",
+    "s.kind = 1",
+    "s.kind = {'FIRST'}",
+    "s.several = {'THIRD'}",
+    "s.several = {'FIRST', 'SECOND'}",
+    "s.several = 'FIRST'",
+    "s.computed = 'SECOND'",
+    "s.is_on = 'yes'",
+    "s.is_on = True",
+    "s.count = 1.5",
+    "s.count = '1'",
+    "s.count = 7",
+    "s.size = '1'",
+    "s.size = 1",
+    "s.title = 1",
+    "s.title = 'a'",
+    "s.title = None",
+    "s.raw = 'a'",
+    "s.raw = b'a'",
+    "s.offset = (1, 2)",
+    "s.offset = (1, 2, 3)",
+    "s.offset = 1",
+    "s.pair = (1.5, 2)",
+    "s.pair = (1, 2)",
+    "s.flags = (True, False, True)",
+    "s.flags = (1, 0, 1)",
+    "s.matrix = [[1.0] * 4] * 4",
+    "s.target = ob",
+    "s.target = None",
+    "s.target = bpy.data.meshes['Cube']",
+    "s.target = 'Cube'",
+    "s.one = s.one",
+    "s.one.size = 2",
+    "s.one.size = 'large'",
+    "s.parts.append(part)",
+    "s.parts.add().size = 1",
+    "s.parts.add().size = 'x'",
+    "s.parts[0].size = (1, 2)",
+    "s.total = 2",
+    "s.kept = 'any'",
+    "s.modes",
+    "s.doubled()",
+    "s.bl_rna.identifier",
+    "s.name",
+    "s.id_data.name",
+    "bpy.context.scene.settings = None",
+    "bpy.context.scene.alike.anything",
+    "ob.weight = 'heavy'",
+    "ob.weight = 3",
+    "ob.rank = 'THIRD'",
+    "bpy.context.scene.settings.kind = 'FOURTH'",
+    "bpy.ops.object.grow(count=3)",
+    "bpy.ops.object.grow(amount=3)",
+    "bpy.ops.object.grow('EXEC_DEFAULT', amount=3, kind='SECOND')",
+    "bpy.ops.object.grow(amount=1.5)",
+    "bpy.ops.object.grow(kind='THIRD')",
+    "op.amount = 2",
+    "op.count = 2",
+    "op.count",
+    "op.kind = 'THIRD'",
+    "op.amount = 'x'",
+]
+
+
+def test_what_blender_refuses_is_found_and_nothing_else(rule_checker: Checker, tmp_path: Path) -> None:
+    answers = run_statements(tmp_path, [_CLASSES, *_LINES])
+    assert not answers[0][0]
+    refused = {line: answer[0] for line, answer in zip(_LINES, answers[1:], strict=True) if answer[0]}
+    refused.pop("s.kept = 'any'")  # told by its type alone, before its own function is asked
+    found = rule_checker.check(_CLASSES + "\n".join(_LINES), rules=_RULES)
+    start = _CLASSES.count("\n") + 1
+    told = {_LINES[finding.span.line - start] for finding in found if finding.severity == "error"}
+    assert told == set(refused)
+    assert len(refused) > len(_LINES) // 2
+
+
+def test_a_collection_is_not_assigned_to(check: Check, tmp_path: Path) -> None:
+    answers = run_statements(tmp_path, [_CLASSES, "s.parts = []"])
+    assert "read-only" in answers[1][0]
+    (found,) = check("own-property", f"{_CLASSES}s.parts = []\n")
+    assert found.message == "`Settings.parts` is read-only: `add`, `remove` and `clear` change it."
+
+
+def test_what_is_kept_nowhere_is_lost(check: Check, tmp_path: Path) -> None:
+    lost = "bpy.context.scene.settings.last = 3"
+    answers = run_statements(tmp_path, [_CLASSES, lost, "bpy.context.scene.settings.last"])
+    assert [answer[0].partition(":")[0] for answer in answers] == ["", "", "AttributeError"]
+    (found,) = check("own-property", f"{_CLASSES}{lost}\n")
+    assert (found.severity, "lost when it is read again" in found.message) == ("warning", True)
+    assert check("own-property", f"{_CLASSES}s.last = 3\nprint(s.last)\n") == []
+
+
+@pytest.mark.parametrize(
+    ("line", "count"),
+    [
+        ("s.kind == 'THIRD'", 1),
+        ("s.kind in {'THIRD', 'FIRST'}", 1),
+        ("s.kind == 'FIRST'", 0),
+        ("s.computed == 'THIRD'", 0),
+    ],
+)
+def test_comparisons_that_never_hold_are_warned_of(check: Check, line: str, count: int) -> None:
+    found = check("own-property", f"{_CLASSES}{line}\n")
+    assert [finding.severity for finding in found] == ["warning"] * count
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        "Settings.__annotations__['modes'] = bpy.props.IntProperty()",
+        "setattr(Settings, 'mo' + 'des', 1)",
+        "Settings.modes = bpy.props.IntProperty()",
+        "hasattr(s, 'modes')",
+        "KINDS.append(('THIRD', 'Third', ''))",
+    ],
+)
+def test_what_is_declared_out_of_sight_is_no_finding(check: Check, change: str) -> None:
+    line = "s.kind = 'THIRD'" if "KINDS" in change else "s.modes"
+    assert check("own-property", f"{_CLASSES}{line}\n")
+    assert check("own-property", f"{_CLASSES}{change}\n{line}\n") == []
+
+
+def test_errors_that_are_caught_are_no_finding(check: Check) -> None:
+    ready = "try:\n    s.kind = 'THIRD'\n    s.modes\n    s.count = 'x'\nexcept Exception:\n    pass\n"
+    assert check("own-property", _CLASSES + ready) == check("wrong-type", _CLASSES + ready) == []
+
+
+def test_the_name_that_is_near_is_told(check: Check) -> None:
+    (found,) = check("own-property", f"{_CLASSES}bpy.ops.object.grow(amuont=3)\n")
+    assert (
+        found.message
+        == "`bpy.ops.object.grow`, which this script makes, takes no `amuont`. Closest: `amount`."
+    )
+    assert found.fix
+    assert [edit.text for edit in found.fix.edits] == ["amount"]
