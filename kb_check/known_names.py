@@ -139,7 +139,8 @@ class KnownNames:
         symbol = self.reader.symbol(function)
         labels = {one.name: one.label for one in symbol.parameters} if symbol else {}
         similar = likely_keywords(name, {one: labels.get(one, "") for one in names})
-        return self._no_part(function, name, names, f"`{function}` takes no `{name}`", "It takes", similar)
+        lacking = self._no_part(function, name, names, f"`{function}` takes no `{name}`", "It takes", similar)
+        return replace(lacking, symbol=f"{function}({name})")
 
     def changed_parameters(self, function: str) -> tuple[Lacking, ...]:
         """The parameters that a function had once, but for those that only got another name."""

@@ -16,7 +16,8 @@ class Change:
     """One certain change.
 
     ``edits`` are of the statements that change, ``additions`` hold in every version (an import). ``since`` is the
-    first version that needs the new form, ``targets`` are the paths that the new form uses.
+    first version that needs the new form, ``targets`` are the paths that the new form uses. ``is_needed`` is False
+    where the target still takes the old form.
     """
 
     rule: str
@@ -26,6 +27,7 @@ class Change:
     since: Version = (0, 0)
     targets: tuple[str, ...] = ()
     additions: tuple[Edit, ...] = ()
+    is_needed: bool = True
 
 
 @dataclass(frozen=True, slots=True)

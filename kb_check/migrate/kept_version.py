@@ -33,7 +33,7 @@ class KeptVersion:
         # Without a base, what the history tells: of arguments, values and sockets it tells too little.
         if any(mark in path for mark in '([:"'):
             return False
-        since, _ = target.arrival(path)
+        since = target.arrival(path)[0] or target.arrival(path.rpartition(".")[0])[0]
         return not since or version_of(since) <= self.version
 
 

@@ -219,16 +219,23 @@ class Place:
         reason: str = "",
         targets: Sequence[str] = (),
         additions: Sequence[Edit] = (),
+        is_deprecated: bool = False,
     ) -> Change:
-        """A change because of a symbol that is gone; its reason and source are the base's where none is given."""
+        """A change because of a symbol that is gone, or deprecated; its reason and source are the base's where none is
+        given.
+        """
         reader = self.script.names.reader
         successors = reader.successors(symbol)
         removed = reader.removed(symbol)
         told = reason or next((row.how for row in successors if row.how), "") or f"{symbol} is gone."
         source = successors[0].source if successors else ""
-        since = version_of(successors[0].version if successors else removed[2]) if removed else (0, 0)
         uses = tuple(targets) or tuple(row.target for row in successors if row.target)[:1]
-        return Change(rule, tuple(edits), told, source, since, uses, tuple(additions))
+        since: Version = (0, 0)
+        if removed:
+            since = version_of(successors[0].version if successors else removed[2])
+        elif is_deprecated:
+            since = max((version_of(reader.arrival(path)[0] or "0.0") for path in uses), default=since)
+        return Change(rule, tuple(edits), told, source, since, uses, tuple(additions), not is_deprecated)
 
 
 def in_order(nodes: Iterable[ast.expr | ast.keyword]) -> list[ast.expr | ast.keyword]:

@@ -10,6 +10,7 @@ from kb_check.migrate.change import Change, Decision, Done
 from kb_check.migrate.guards import can_be_guarded, guarded_edits, innermost, plain_edits
 from kb_check.migrate.place import Place, version_of
 from kb_check.migrate.rewrite import all_rewrites
+from kb_check.migrate.rewrites.matrix_products import BEFORE_PRODUCTS
 from kb_check.migrate.version_tests import reaches
 from kb_check.package import paths_in_package
 from kb_check.salvage import parses
@@ -93,8 +94,11 @@ class Migrator:
     def _oldest(self, states: Iterable[_State]) -> Version:
         """The oldest Blender that had something which the files use and the target lacks."""
         reader = self._target.names.reader
-        spans = (reader.removed(one.symbol) for state in states for one in state.findings if one.symbol)
-        return min((version_of(span[1]) for span in spans if span), default=_version(self._target))
+        findings = [one for state in states for one in state.findings]
+        spans = (reader.removed(one.symbol) for one in findings if one.symbol)
+        oldest = min((version_of(span[1]) for span in spans if span), default=_version(self._target))
+        has_products = any(one.rule == "refused-product" for one in findings)
+        return min(oldest, BEFORE_PRODUCTS) if has_products else oldest
 
     # One round.
 
@@ -104,7 +108,7 @@ class Migrator:
             return False
         place = Place(self._target.script(state.reading, package), state.findings, written_for)
         proposals = apart(state.text, self._proposals(place), lambda change: change.edits)
-        chosen = [change for change in proposals if change.since <= place.target]
+        chosen = [change for change in proposals if change.since <= place.target and self._is_wanted(change)]
         guarded: list[Change] = []
         plain: list[Change] = []
         for change in chosen:
@@ -146,7 +150,7 @@ class Migrator:
             if finding.fix.sure or self._held_before(finding):
                 yield place.change(
                     finding.rule, finding.symbol, finding.fix.edits, reason=finding.message,
-                    targets=finding.instead[:1],
+                    targets=finding.instead[:1], is_deprecated=finding.rule == "deprecated",
                 )  # fmt: skip
 
     def _held_before(self, finding: Finding) -> bool:
@@ -155,6 +159,11 @@ class Migrator:
             self._target.names.reader.successors(finding.symbol) if finding.rule == "never-true" else []
         )
         return len(successors) == 1 and bool(successors[0].target) and not successors[0].how
+
+    def _is_wanted(self, change: Change) -> bool:
+        """Whether a change is made: what the target still takes stays where an older Blender lacks the new form."""
+        reader = self._target.names.reader
+        return change.is_needed or all(kept.takes(change, reader) for kept in self._keep)
 
     def _needs_guard(self, place: Place, change: Change) -> bool:
         reader = self._target.names.reader

@@ -15,20 +15,64 @@ if TYPE_CHECKING:
 
 _CURVES = "bpy.types.Action.fcurves"
 _GROUPS = "bpy.types.Action.groups"
+_ENSURE_CURVE = "bpy.types.Action.fcurve_ensure_for_datablock"
 _ENSURE = "bpy_extras.anim_utils.action_ensure_channelbag_for_slot"
 
 
 def _propose(place: Place) -> Iterator[Change]:
     for row, symbol in place.gone(_CURVES, _GROUPS):
         node = row.node
-        if not isinstance(node, ast.Attribute) or (slot := _slot(place, node.value)) is None:
+        if not isinstance(node, ast.Attribute):
             continue
-        action = place.text(node.value)
-        text = f"anim_utils.action_ensure_channelbag_for_slot({action}, {slot}).{node.attr}"
-        yield place.change(
-            REWRITE.id, symbol, [place.write(node, text)], targets=[_ENSURE],
-            additions=place.add_import("from bpy_extras import anim_utils"),
-        )  # fmt: skip
+        if symbol == _CURVES and (made := _made(place, node)) is not None:
+            call, owner = made
+            given = ", ".join([owner, *_given(place, call)])
+            text = f"{place.operand(node.value)}.fcurve_ensure_for_datablock({given})"
+            yield place.change(REWRITE.id, symbol, [place.write(call, text)], targets=[_ENSURE_CURVE])
+        elif (slot := _slot(place, node.value)) is not None:
+            action = place.text(node.value)
+            text = f"anim_utils.action_ensure_channelbag_for_slot({action}, {slot}).{node.attr}"
+            yield place.change(
+                REWRITE.id, symbol, [place.write(node, text)], targets=[_ENSURE],
+                additions=place.add_import("from bpy_extras import anim_utils"),
+            )  # fmt: skip
+
+
+def _made(place: Place, node: ast.Attribute) -> tuple[ast.Call, str] | None:
+    """The call ``action.fcurves.new(…)``, and what the action animates, where that is known.
+
+    An action that is new has no slot yet: what makes the curve makes it, too.
+    """
+    callee = place.parent(node)
+    call = place.parent(callee) if callee is not None else None
+    if (
+        not isinstance(callee, ast.Attribute)
+        or callee.attr != "new"
+        or not isinstance(call, ast.Call)
+        or call.func is not callee
+        or any(isinstance(argument, ast.Starred) for argument in call.args)
+    ):
+        return None
+    action = node.value
+    if isinstance(action, ast.Name) and _is_in_use(place, action.id):
+        values = [place.stored_value(one) for one in place.stores(action.id)]
+        action = values[0] if len(values) == 1 and values[0] is not None else action
+    data = action.value if isinstance(action, ast.Attribute) and action.attr == "action" else None
+    if isinstance(data, ast.Attribute) and data.attr == "animation_data" and place.is_a(data, _DATA):
+        owner = data.value
+        is_same = action is node.value or (isinstance(owner, ast.Name) and len(place.stores(owner.id)) == 1)
+        return (call, place.argument(owner)) if is_same else None
+    return None
+
+
+def _given(place: Place, call: ast.Call) -> list[str]:
+    """What the call is given, by the names that it has now."""
+    names = {"action_group": "group_name"}
+    keywords = [(names.get(one.arg, one.arg), one.value) for one in call.keywords if one.arg]
+    return [
+        *map(place.argument, call.args),
+        *(f"{name}={place.argument(value)}" for name, value in keywords),
+    ]
 
 
 def _slot(place: Place, action: ast.expr) -> str | None:

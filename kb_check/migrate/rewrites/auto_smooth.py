@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import ast
+import re
 from typing import TYPE_CHECKING
 
+from kb_check.made_here import attributes
 from kb_check.migrate.rewrite import Rewrite
 
 if TYPE_CHECKING:
@@ -20,9 +22,17 @@ _REASON = (
     "Smooth shading follows sharp edges. They are set here, from the angle, once: where the mesh changes "
     "afterwards, set them again."
 )
+_CUSTOM = ("normals_split_custom_set", "normals_split_custom_set_from_vertices")
+_NO_REASON = "Custom normals are shown without it, and sharp edges would change them."
+_MODIFIERS = re.compile(r"\bmodifier_add\b|\.modifiers\.new\b")
 
 
 def _propose(place: Place) -> Iterator[Change]:
+    if not attributes(place.script).keys().isdisjoint(_CUSTOM):
+        yield from _left_out(place)
+        return
+    if _MODIFIERS.search(place.script.code):
+        return  # what they make was smoothed as well, which edges of the mesh alone do not do
     angles = {_owner(place, row.node): row.node for row, _ in place.gone(_ANGLE)}
     for row, symbol in place.gone(_USE):
         node = row.node
@@ -44,6 +54,14 @@ def _propose(place: Place) -> Iterator[Change]:
         elif value.value:
             edits = [place.write(statement, _set_sharp(place, node, _DEFAULT))]
         yield place.change(REWRITE.id, symbol, edits, reason=_REASON)
+
+
+def _left_out(place: Place) -> Iterator[Change]:
+    for row, symbol in place.gone(_USE, _ANGLE):
+        if place.stored_value(row.node) is not None:
+            yield place.change(
+                REWRITE.id, symbol, [place.delete(place.statement(row.node))], reason=_NO_REASON
+            )
 
 
 def _owner(place: Place, node: ast.AST) -> str:

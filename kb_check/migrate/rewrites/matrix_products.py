@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from kb_check.migrate.place import Place
 
 _SINCE = (2, 80)
+BEFORE_PRODUCTS = (2, 79)  # the last Blender in which * multiplied them as @ does now
 _SOURCE = "release notes 2.80: Python API"
 _REASON = "Matrices, quaternions and vectors are multiplied with @ since 2.80; * is item by item."
 # Pairs for which Blender refuses ``*``. For the others both work, with another meaning: only old code means a product.

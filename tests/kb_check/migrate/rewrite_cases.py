@@ -71,6 +71,109 @@ CASES = (
          "r = 2\nbpy.ops.mesh.primitive_plane_add(size=2 * (r + 1))\n"),
     case("keyword-value", "2.79", "bpy.ops.transform.resize(value=(2, 2, 2), proportional='DISABLED')\n",
          "bpy.ops.transform.resize(value=(2, 2, 2), use_proportional_edit=False)\n"),
+    case("keyword-value", "2.79", "bpy.ops.object.lamp_add(type='SUN', view_align=False, layers=[True] * 20)\n",
+         "bpy.ops.object.light_add(type='SUN', align=\"WORLD\")\n"),
+    case("keyword-value", "2.83",
+         "ob.modifiers.new('B', 'BEVEL')\nbpy.ops.object.modifier_apply(apply_as='DATA', modifier='B')\n",
+         "ob.modifiers.new('B', 'BEVEL')\nbpy.ops.object.modifier_apply(modifier='B')\n"),
+    case("keyword-value", "2.79", "bpy.ops.transform.rotate(value=1.0, axis=(0, 0, 1))\n",
+         'bpy.ops.transform.rotate(value=1.0, orient_axis="Z")\n'),
+    case("keyword-value", "3.4",
+         """
+         strips = scene.sequence_editor_create().sequences
+         strips.new_effect("C", "COLOR", 1, frame_start=5, frame_end=20)
+         """,
+         """
+         strips = scene.sequence_editor_create().strips
+         strips.new_effect("C", "COLOR", 1, frame_start=5, length=15)
+         """),
+    case("moved-member", "2.79", "scene.render.alpha_mode = 'TRANSPARENT'\n", "scene.render.film_transparent = True\n"),
+    case("moved-member", "2.79", "scene.cycles.film_transparent = True\n", "scene.render.film_transparent = True\n"),
+    case("moved-member", "2.79", "empty = bpy.data.objects.new('E', None)\nempty.dupli_type = 'GROUP'\n",
+         "empty = bpy.data.objects.new('E', None)\nempty.instance_type = \"COLLECTION\"\n"),
+    case("moved-member", "2.93", "ob.cycles_visibility.shadow = False\n", "ob.visible_shadow = False\n"),
+    case("moved-member", "2.93",
+         """
+         arm = bpy.data.objects.new("A", bpy.data.armatures.new("A"))
+         scene.collection.objects.link(arm)
+         bpy.context.view_layer.objects.active = arm
+         bpy.ops.object.mode_set(mode="EDIT")
+         arm.data.edit_bones.new("B").tail = (0, 0, 1)
+         bpy.ops.object.mode_set(mode="OBJECT")
+         arm.pose.bones["B"].custom_shape_scale = 2.0
+         """,
+         """
+         arm = bpy.data.objects.new("A", bpy.data.armatures.new("A"))
+         scene.collection.objects.link(arm)
+         bpy.context.view_layer.objects.active = arm
+         bpy.ops.object.mode_set(mode="EDIT")
+         arm.data.edit_bones.new("B").tail = (0, 0, 1)
+         bpy.ops.object.mode_set(mode="OBJECT")
+         arm.pose.bones["B"].custom_shape_scale_xyz = (2.0, 2.0, 2.0)
+         """),
+    case("moved-member", "2.79",
+         """
+         tex = bpy.data.materials.new("M").node_tree.nodes.new("ShaderNodeTexImage")
+         tex.image = bpy.data.images.new("I", 4, 4)
+         tex.color_space = "NONE"
+         """,
+         """
+         tex = bpy.data.materials.new("M").node_tree.nodes.new("ShaderNodeTexImage")
+         tex.image = bpy.data.images.new("I", 4, 4)
+         tex.image.colorspace_settings.name = "Non-Color"
+         """),
+    case("scaled-socket", "3.4",
+         """
+         material = bpy.data.materials.new("M")
+         material.use_nodes = True
+         bsdf = material.node_tree.nodes["Principled BSDF"]
+         bsdf.inputs["Clearcoat"].default_value = 0.5
+         """,
+         """
+         material = bpy.data.materials.new("M")
+         material.use_nodes = True
+         bsdf = material.node_tree.nodes["Principled BSDF"]
+         bsdf.inputs["Coat Weight"].default_value = 0.125
+         """),
+    case("scaled-socket", "3.4",
+         """
+         material = bpy.data.materials.new("M")
+         material.use_nodes = True
+         bsdf = material.node_tree.nodes["Principled BSDF"]
+         bsdf.inputs["Subsurface"].default_value = 0.1
+         """,
+         """
+         material = bpy.data.materials.new("M")
+         material.use_nodes = True
+         bsdf = material.node_tree.nodes["Principled BSDF"]
+         bsdf.inputs["Subsurface Weight"].default_value = 1.0
+         bsdf.inputs["Subsurface Scale"].default_value = 0.1
+         """),
+    case("auto-smooth", "3.4",
+         """
+         mesh = ob.data
+         mesh.normals_split_custom_set([(0, 0, 1)] * len(mesh.loops))
+         mesh.use_auto_smooth = True
+         """,
+         """
+         mesh = ob.data
+         mesh.normals_split_custom_set([(0, 0, 1)] * len(mesh.loops))
+         """),
+    case("action-channels", "3.4",
+         """
+         ob.animation_data_create()
+         ob.animation_data.action = bpy.data.actions.new("A")
+         action = ob.animation_data.action
+         action.fcurves.new("location", index=1, action_group="G")
+         ob.animation_data.action.fcurves.new(data_path="location", index=2)
+         """,
+         """
+         ob.animation_data_create()
+         ob.animation_data.action = bpy.data.actions.new("A")
+         action = ob.animation_data.action
+         action.fcurve_ensure_for_datablock(ob, "location", index=1, group_name="G")
+         ob.animation_data.action.fcurve_ensure_for_datablock(ob, data_path="location", index=2)
+         """),
     case("matrix-product", "2.79", "place = ob.matrix_world * Vector((1, 2, 3))\n",
          "place = ob.matrix_world @ Vector((1, 2, 3))\n"),
     case("matrix-product", "2.79", "ob.select = True\nob.matrix_world *= Matrix.Rotation(1.0, 4, 'X')\n",

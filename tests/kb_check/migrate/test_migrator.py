@@ -55,6 +55,61 @@ def test_no_guard_where_the_older_version_has_the_new_form(checker: Checker) -> 
     assert migrated(checker, code, (4, 2)).new == 'import bpy\nbpy.context.object.display_type = "WIRE"\n'
 
 
+def test_what_the_target_still_takes_stays_for_a_version_that_lacks_the_new_form(checker: Checker) -> None:
+    code = "import bpy\nprint(bpy.context.scene.sequence_editor.strips[0].frame_final_duration)\n"
+    assert migrated(checker, code).new == code.replace("frame_final_duration", "duration")
+    assert migrated(checker, code, (4, 5)).new == code
+
+
+def test_members_are_no_older_than_their_class(checker: Checker) -> None:
+    code = "import bpy\nbpy.context.scene.objects.link(bpy.context.object)\n"
+    new = migrated(checker, code, (2, 79)).new
+    assert "if bpy.app.version >= (2, 80, 0):" in new
+    assert "    bpy.context.scene.objects.link(bpy.context.object)\n" in new
+
+
+def test_a_product_that_is_refused_tells_how_old_a_script_is(checker: Checker) -> None:
+    code = """\
+    import bpy
+    from mathutils import Vector
+    place = bpy.context.object.matrix_world * Vector((1, 2, 3))
+    height = Vector((1, 0, 0)) * Vector((0, 1, 0))
+    """
+    assert migrated(checker, code).new.count(" @ ") == 2
+    new_code = dedent(code).replace("place = bpy.context.object.matrix_world * Vector((1, 2, 3))\n", "")
+    assert migrated(checker, new_code).new == new_code
+
+
+@pytest.mark.parametrize(
+    ("line", "more"),
+    [
+        ("ob.data.use_auto_smooth = True", "ob.modifiers.new('S', 'SOLIDIFY')"),
+        ("tex.color_space = 'NONE'", "tex.image = bpy.data.images[0]"),
+        ("tex.color_space = 'OTHER'", ""),
+        ("bsdf.inputs['Subsurface'].default_value = amount", ""),
+        ("bpy.ops.transform.rotate(value=1, axis=(0, 0, -1))", ""),
+        (
+            "bpy.context.scene.sequence_editor.strips.new_effect('A', 'ADD', 1, 1, frame_end=9, input1=strip)",
+            "",
+        ),
+    ],
+)
+def test_what_would_mean_something_else_is_left_to_a_person(checker: Checker, line: str, more: str) -> None:
+    code = f"""\
+import bpy
+ob = bpy.context.object
+nodes = bpy.data.materials[0].node_tree.nodes
+tex, bsdf = nodes.new("ShaderNodeTexImage"), nodes["Principled BSDF"]
+strip = bpy.context.scene.sequence_editor.strips[0]
+amount = float(ob["amount"])
+{line}
+{more}
+"""
+    file = migrated(checker, code)
+    assert file.new == code
+    assert [one.line for one in file.decisions] == [7]
+
+
 def test_neighbours_share_a_guard(checker: Checker) -> None:
     code = """\
     import bpy
