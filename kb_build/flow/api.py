@@ -15,6 +15,8 @@ from kb_build.flow.facts import (
     LAYER_ITEM,
     LAYERS,
     NARROWER,
+    OF_OPERATOR,
+    OPERATOR_PROPERTIES,
     SAME_CLASS,
     SAME_TYPE,
 )
@@ -40,7 +42,7 @@ from kb_build.flow.types import (
     members,
     union,
 )
-from kb_build.symbols.api_names import COLLECTION, GROUPS, STRUCT
+from kb_build.symbols.api_names import COLLECTION, GROUPS, OPERATORS, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.math_classes import math_class
 from kb_build.symbols.object_data import data_class
@@ -64,7 +66,21 @@ _WORD = re.compile(r"[A-Z][a-z0-9]*$")
 _AROUND = re.compile(r"([A-Z][a-z0-9]*)([A-Z][a-z0-9]*)")
 _SIMPLE = re.compile(r"[^a-z0-9]")
 _MAKER = "new_"
+_OF_CLASS = "_OT_"
 _OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
+
+
+def part_of_macro(parameter: Parameter) -> str:
+    """The operator whose keywords a macro takes as a dictionary by one of its own; empty for other keywords."""
+    return operator_path(parameter.type) if _OF_CLASS in parameter.type else ""
+
+
+def operator_path(text: str) -> str:
+    """The path of an operator that a text names: ``object.delete``, or ``OBJECT_OT_delete``."""
+    module, of_class, name = text.partition(_OF_CLASS)
+    if not of_class:
+        module, _, name = text.partition(".")
+    return f"{OPERATORS}{module.lower()}.{name}"  # Blender takes the module in capitals too
 
 
 @dataclass(frozen=True, slots=True)
@@ -281,6 +297,8 @@ class Api:
         """The type of what an operator is called with by a keyword; UNKNOWN for what has members or parts."""
         if parameter.type == "enum":
             return Plain("str", None, FromProperty(f"{path}({parameter.name})"))
+        if part := part_of_macro(parameter):
+            return Instance(OPERATOR_PROPERTIES, ((OF_OPERATOR, Operator(part)),))
         return _SCALARS.get(parameter.type, UNKNOWN)
 
     def read_type(self, text: str, scope: str) -> Type:

@@ -6,6 +6,7 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kb_build.flow.api import operator_path, part_of_macro
 from kb_build.flow.core import ANY
 from kb_build.flow.expressions import constants
 from kb_build.flow.facts import (
@@ -42,7 +43,7 @@ from kb_build.flow.types import (
     union,
     without_none,
 )
-from kb_build.symbols.api_names import OBJECT, OPERATORS
+from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.api_names import TYPES as T
 
 if TYPE_CHECKING:
@@ -158,7 +159,21 @@ class ApiCalls(ScriptCalls):
                 return
             self._value(symbol, parameter, argument)
 
+    def _macro_part(self, path: str, node: ast.Dict) -> None:
+        """What a macro calls one of its operators with: ``TRANSFORM_OT_translate={"value": (1, 0, 0)}``."""
+        symbol = self.api.symbols.symbol(path)
+        for key, value in zip(node.keys, node.values, strict=True):
+            if symbol is None or not isinstance(key, ast.Constant) or not isinstance(key.value, str):
+                continue
+            if parameter := symbol.parameter(key.value):
+                self.resolve(key, "keyword", key.value, (f"{path}({key.value})",))
+                self._value(symbol, parameter, value)
+            else:
+                self.resolve(key, "keyword", key.value, missing=(path,))
+
     def _value(self, symbol: Symbol, parameter: Parameter, node: ast.expr) -> None:
+        if isinstance(node, ast.Dict) and (part := part_of_macro(parameter)):
+            self._macro_part(part, node)
         if parameter.enum_items:
             nodes = node.elts if isinstance(node, ast.Set) else [node]
             for item in nodes:
@@ -205,7 +220,7 @@ class ApiCalls(ScriptCalls):
     @staticmethod
     def _set_up(result: Instance, name: Type) -> Type:
         """What an operator is called with by a button, or by a key, that names it."""
-        paths = [_operator_path(text) for text in literal_texts(name)]
+        paths = [operator_path(text) for text in literal_texts(name)]
         return (
             union(replace(result, traits=((OF_OPERATOR, Operator(path)),)) for path in paths)
             if paths
@@ -244,7 +259,7 @@ class ApiCalls(ScriptCalls):
     def _named_operator(self, node: ast.expr, kind: Type) -> None:
         text = literal_text(kind)
         if text and isinstance(node, ast.Constant):
-            path = _operator_path(text)
+            path = operator_path(text)
             known = self.api.symbols.symbol(path) is not None
             if path in self.own_operators or self.is_there_at_times(path):
                 return
@@ -290,14 +305,6 @@ class ApiCalls(ScriptCalls):
             self._keywords(symbol, call.node)
             self._values(symbol, call.node)
         return Instance(callee.cls)
-
-
-def _operator_path(text: str) -> str:
-    """The path of an operator that a text names: ``object.delete``, or ``OBJECT_OT_delete``."""
-    module, of_class, name = text.partition("_OT_")
-    if not of_class:
-        module, _, name = text.partition(".")
-    return f"{OPERATORS}{module.lower()}.{name}"  # Blender takes the module in capitals too
 
 
 def _raises_instead(symbol: Symbol, call: ast.Call) -> bool:

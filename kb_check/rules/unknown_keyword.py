@@ -5,6 +5,8 @@ Blender refuses it with a TypeError before anything is done.
 ```python
 bpy.ops.mesh.primitive_cube_add(radius=1)  # reported: size since 2.80
 bpy.ops.mesh.primitive_cube_add(size=2)
+bpy.ops.object.duplicate_move(TRANSFORM_OT_translate={"proportional": "DISABLED"})  # reported
+layout.operator("object.delete").use_gobal = True  # reported: use_global
 ```
 """
 
@@ -15,6 +17,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.paths import argument_of
+from kb_check.given import assigned
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.rules.renaming import may_take
@@ -22,6 +25,7 @@ from kb_check.rules.renaming import may_take
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kb_build.flow.types import Resolution
     from kb_check.findings import Finding
     from kb_check.script import Script
 
@@ -33,10 +37,24 @@ def _check(script: Script) -> Iterator[Finding]:
         parameters = {parameter.name: parameter for parameter in symbol.parameters} if symbol else {}
         lacking = script.names.parameter(function, row.value, parameters)
         named = parameters.get(argument_of(lacking.replacement))
-        value = row.node.value if isinstance(row.node, ast.keyword) else row.node
-        if named is not None and isinstance(value, ast.expr) and not may_take(script, named, value):
+        value = _given(script, row)
+        if named is not None and value is not None and not may_take(script, named, value):
             lacking = replace(lacking, replacement="", sure=False)
         yield lacking_finding(script, RULE.id, row, lacking)
+
+
+def _given(script: Script, row: Resolution) -> ast.expr | None:
+    """What is given by a keyword, by a button's setting or by a key of a dictionary; None for nothing."""
+    match row.node:
+        case ast.keyword(value=value):
+            return value
+        case ast.Attribute():
+            return assigned(row.statement, row.node)
+        case _:
+            pairs = (
+                pair for node in script.all(ast.Dict) for pair in zip(node.keys, node.values, strict=True)
+            )
+            return next((value for key, value in pairs if key is row.node), None)
 
 
 RULE = Rule("unknown-keyword", "error", "A keyword that the call does not take", _check)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.blender
 
 _RULES = ["own-property", "wrong-type", "unknown-attribute", "unknown-keyword", "unknown-value"]
-_CLASSES = """\
+_CLASSES: str = """\
 import bpy
 KINDS = [("FIRST", "First", ""), ("SECOND", "Second", "")]
 class Part(bpy.types.PropertyGroup):
@@ -63,7 +63,7 @@ ob = bpy.context.object
 part = s.parts.add()
 op = bpy.context.window_manager.operator_properties_last("object.grow")
 """
-_LINES = [
+_LINES: list[str] = [
     "s.kind = 'THIRD'",
     "s.kind = 'SECOND'",
     "s.kind = 1",

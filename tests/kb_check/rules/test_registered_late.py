@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.blender
 
-_CLASSES = """\
+_CLASSES: str = """\
 import bpy
 class Part(bpy.types.PropertyGroup):
     size: bpy.props.FloatProperty()
