@@ -172,9 +172,9 @@ class KnownNames:
                 return self._removed_of(f"{node}.", removed, f"`{node}` has no socket {name!r}", "had")
         return self._no_part(node, name, names, f"`{node}` has no socket {name!r}", "It has")
 
-    def still_works(self, path: str) -> bool:
-        """Whether this Blender still takes a former name."""
-        return bool(self.reader.still_works(path))
+    def still_works(self, path: str) -> str:
+        """The symbol that one gets by a former name that this Blender still takes; empty where it does not."""
+        return self.reader.still_works(path)
 
     def _removed(self, removed: RemovedSymbol) -> Lacking:
         targets = removed.targets or tuple(path for path, _ in removed.similar[:_MOST_NAMED])

@@ -12,9 +12,9 @@ from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.computing import RUNNING, STORING, computing
 from kb_check.given import Given, assigned
+from kb_check.made_here import callee_path
 from kb_check.own_classes import own_classes
 from kb_check.own_declarations import OwnProperty, declared
-from kb_check.registered_types import MAKE_PROPERTIES
 from kb_check.script import once_per_script
 from kb_check.tried import is_tried
 
@@ -25,6 +25,15 @@ if TYPE_CHECKING:
     from kb_check.own_classes import OwnClass
     from kb_check.script import Script
 
+_LAYOUT = f"{T}UILayout"
+# What shows properties: the places of a thing and of the name of its property.
+_SHOWING = {
+    **dict.fromkeys(
+        ("prop", "prop_enum", "prop_menu_enum", "props_enum", "prop_search", "prop_tabs_enum", "prop_with_popover"),
+        ((0, 1),),
+    ),
+    "template_list": ((2, 3), (4, 5)),
+}  # fmt: skip
 _OPERATORS = frozenset({f"{T}Operator", f"{T}Macro"})
 
 
@@ -46,10 +55,10 @@ class Use:
     """A place where a property of a script's class, or of one of Blender's, is named.
 
     ``node`` names it, ``found`` is None where the class lacks it; ``value`` is what is given to it, if anything is.
-    ``is_called``: an operator is called with it, by a keyword or by a button.
+    ``is_called``: an operator is called with it, by a keyword or by a button. A text names what a layout shows.
     """
 
-    node: ast.Attribute | ast.keyword
+    node: ast.Attribute | ast.keyword | ast.Constant
     name: str
     of: OwnProperties | None
     found: OwnProperty | None
@@ -75,7 +84,7 @@ def own_properties(script: Script) -> _Known:
     found = _Known()
     numbers = {node: number for number, node in enumerate(script.analysis.classes)}
     for own in own_classes(script):
-        if own.path in MAKE_PROPERTIES and own.is_final and own.node in numbers:
+        if own.is_final and own.node in numbers:
             one = _of_class(script, own)
             found.classes[numbers[own.node]] = one
             if one.operator:
@@ -102,6 +111,7 @@ def uses(script: Script) -> Iterator[Use]:
         if found[0] and all(one == found[0] for one in found):
             yield found[0]
     for call in script.all(ast.Call):
+        yield from _shown(own, script, call)
         declared = own.operators.get(_operator_called(script, call))
         for keyword in call.keywords if declared else ():
             if declared and keyword.arg:
@@ -137,6 +147,19 @@ def _use(own: _Known, script: Script, node: ast.Attribute, kind: Type) -> Use | 
     if declared is None:
         return None
     return Use(node, name, declared, declared.properties.get(name), _assigned(script, node), is_called)
+
+
+def _shown(own: _Known, script: Script, call: ast.Call) -> Iterator[Use]:
+    """The properties of the script's things that a layout shows."""
+    places = _SHOWING.get(call.func.attr, ()) if isinstance(call.func, ast.Attribute) else ()
+    if not places or callee_path(script, call) != f"{_LAYOUT}.{ast.unparse(call.func).rpartition('.')[2]}":
+        return
+    for owner, name in places:
+        text = call.args[name] if len(call.args) > name else None
+        kind = script.type_of(call.args[owner]) if len(call.args) > owner else None
+        declared = own.classes.get(kind.number) if isinstance(kind, LocalInstance) else None
+        if declared and isinstance(text, ast.Constant) and isinstance(text.value, str):
+            yield Use(text, text.value, declared, declared.properties.get(text.value))
 
 
 def _assigned(script: Script, target: ast.Attribute) -> ast.expr | None:

@@ -98,6 +98,10 @@ class FormerNames(Protocol):
         """Whether a class or module of another Blender has a member that it lacks in this one."""
         ...
 
+    def still_works(self, path: str) -> str:
+        """The symbol that one gets by a former name that this Blender still takes; empty where it does not."""
+        ...
+
     def successor(self, owner: str, name: str) -> str:
         """The path that surely takes the place of such a member with no other change; empty for none."""
         ...
@@ -289,7 +293,7 @@ class Api:
         if math := math_class(symbol):
             return Instance(math)
         size = symbol.array[-1]
-        element: Type = scalar if len(symbol.array) == 1 else Sequence("array", scalar)
+        element: Type = scalar if len(symbol.array) == 1 else Instance(ARRAY, ((ELEMENT, scalar),))
         return Instance(ARRAY, ((ELEMENT, element),)) if size else Sequence("array", scalar)
 
     @staticmethod
@@ -366,8 +370,12 @@ class Api:
 
     def class_of_value(self, base: str, value: str) -> str:
         """The class below ``base`` that a value stands for: Modifier and ``CLOTH`` → ClothModifier; empty for none."""
-        if value.isidentifier() and self.descends(f"{T}{value}", base):
-            return f"{T}{value}"
+        if value.isidentifier():
+            cls = f"{T}{value}"
+            if not self.is_class(cls) and self._former:
+                cls = self._former.still_works(cls)  # the name of another Blender, which this one takes
+            if cls and self.descends(cls, base):
+                return cls
         if base == _INTERFACE and value.startswith("NodeSocket"):
             cls = f"{base}{value.removeprefix('NodeSocket')}"
             return cls if self.is_class(cls) else ""

@@ -78,7 +78,8 @@ class Defining(Expressions):
         )
         self._add_to_api(node.name, number, scope.state.names.get("bl_idname"))
         for name, kind in scope.ever.items():
-            definition.bind(name, general(kind) if isinstance(kind, Plain) else kind)
+            is_general = isinstance(kind, Plain) and name != "bl_idname"  # by which buttons name an operator
+            definition.bind(name, general(kind) if is_general else kind)
         self.bind(node.name, LocalClass(number))
         return True
 

@@ -11,6 +11,7 @@ _MAKERS = {
     "bpy.ops.mesh.primitive_": "MESH", "bpy.ops.curve.primitive_": "CURVE", "bpy.ops.surface.primitive_": "SURFACE",
     "bpy.ops.object.text_add": "FONT", "bpy.ops.object.armature_add": "ARMATURE", "bpy.ops.object.camera_add": "CAMERA",
     "bpy.ops.object.light_add": "LIGHT", "bpy.ops.object.metaball_add": "META", "bpy.ops.object.speaker_add": "SPEAKER",
+    "bpy.ops.object.grease_pencil_add": "GREASEPENCIL", "bpy.ops.object.gpencil_add": "GPENCIL",
 }  # fmt: skip
 # Operators that leave the active object as it is: how their paths begin.
 _LEAVING_IT = (

@@ -9,6 +9,7 @@ class Settings(bpy.types.PropertyGroup):
 context.scene.settings.mode = "BEST"  # reported: one of the items
 context.scene.settings.parts = []  # reported: read-only
 context.scene.settings.modes  # reported: mode
+layout.prop(context.scene.settings, "modes")  # reported
 context.scene.settings.last = 3  # reported: lost as soon as the settings are read again
 bpy.ops.object.grow(cuont=3)  # reported: a keyword that the script's operator lacks
 layout.operator("object.grow").cuont = 3  # reported
@@ -24,10 +25,11 @@ import ast
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import literal_texts
+from kb_build.flow.core import ANY
+from kb_build.flow.types import UNKNOWN, Instance, LocalInstance, literal_texts, members
 from kb_check.findings import Finding, Fix
-from kb_check.made_here import attributes, stored_names
-from kb_check.own_properties import uses
+from kb_check.made_here import attributes
+from kb_check.own_properties import own_properties, uses
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
 from kb_check.tried import is_tried
@@ -40,6 +42,7 @@ if TYPE_CHECKING:
     from kb_check.own_properties import OwnProperties, Use
     from kb_check.script import Script
 
+_LAYOUT = "bpy.types.UILayout"
 _GROUP = "bpy.types.PropertyGroup"
 _MOST_NAMES = 8
 _NEAR = 0.75  # of difflib
@@ -50,9 +53,10 @@ _COMPUTED = "it has `get`, and no `set`"
 
 
 def _check(script: Script) -> Iterator[Finding]:
+    yield from _lost_operators(script)
     compared = _compared(script)
     for use in uses(script):
-        if is_tried(script, use.node if isinstance(use.node, ast.Attribute) else use.node.value):
+        if is_tried(script, use.node.value if isinstance(use.node, ast.keyword) else use.node):
             continue
         if use.found is None:
             if use.of and _lacks(script, use, use.of):
@@ -67,15 +71,41 @@ def _check(script: Script) -> Iterator[Finding]:
                 yield from _values(script, use.found, other, use.found.items, is_compared=True)
 
 
+def _lost_operators(script: Script) -> Iterator[Finding]:
+    """Operators that are named below a module which the script's own operators alone make."""
+    own = own_properties(script).operators
+    modules = {path.rpartition(".")[0] for path in own}
+    modules = {path for path in modules if script.api.symbols.symbol(path) is None}
+    for node in script.all(ast.Attribute) if modules and ANY not in script.analysis.own_operators else ():
+        owner = ast.unparse(node.value) if isinstance(node.value, ast.Attribute) else ""
+        if owner in modules and not script.package.has((owner,), node.attr) and not is_tried(script, node):
+            made = [path for path in own if path.startswith(f"{owner}.")]
+            told = f"`{owner}` has no `{node.attr}`: this script makes {_listed(made)}."
+            yield Finding(RULE.id, "error", script.name_span(node), told, f"{owner}.{node.attr}")
+
+
 def _lacks(script: Script, use: Use, of: OwnProperties) -> bool:
     """Whether nothing gives an attribute, or a keyword, to what the script declares."""
     if not of.is_whole or use.name.startswith("__") or use.name in PYTHONS:
         return False
     if isinstance(use.node, ast.keyword):
         return True
-    if script.api.member(of.own.path, use.name) or use.name in _texts(script):
+    if script.api.member(of.own.path, use.name) or use.name in _asked(script):
         return False
-    return use.is_called or use.is_stored or use.name not in stored_names(script)
+    return use.is_called or use.is_stored or not _may_be_set(script, use.name, of)
+
+
+def _may_be_set(script: Script, name: str, of: OwnProperties) -> bool:
+    """Whether the script sets an attribute of that name on what may be an instance of the class."""
+    for node in attributes(script).get(name, ()):
+        if not isinstance(node.ctx, ast.Load):
+            for kind in members(script.type_of(node.value) or UNKNOWN):
+                is_own = (
+                    isinstance(kind, LocalInstance) and script.analysis.classes[kind.number] in of.own.family
+                )
+                if is_own or not isinstance(kind, (LocalInstance, Instance)):
+                    return True
+    return False
 
 
 def _absent(script: Script, use: Use, of: OwnProperties) -> Iterator[Finding]:
@@ -89,6 +119,8 @@ def _absent(script: Script, use: Use, of: OwnProperties) -> Iterator[Finding]:
         what = f"`{of.operator}`, which this script makes, takes no `{use.name}`."
     elif not use.is_stored:
         what = f"`{of.own.node.name}` has no `{use.name}`."
+        if script.api.member(_LAYOUT, use.name) and script.api.member(of.own.path, "layout"):
+            told = f"The layout has it: `layout.{use.name}`."
     elif of.own.path == _GROUP and not _is_read_beside(script, use.node):
         what = f"`{of.own.node.name}` declares no `{use.name}`: what is set is lost when it is read again."
         severity = "warning"
@@ -147,8 +179,21 @@ def _compared(script: Script) -> dict[ast.AST, ast.expr]:
 
 
 @once_per_script
-def _texts(script: Script) -> frozenset[str]:
-    return frozenset(node.value for node in script.all(ast.Constant) if isinstance(node.value, str))
+def _asked(script: Script) -> frozenset[str]:
+    """The names for which the script asks by a text whether they are there."""
+    found: list[ast.expr] = []
+    for node in script.all(ast.Call, ast.Compare):
+        match node:
+            case (
+                ast.Call(func=ast.Name(id="hasattr" | "getattr"), args=[_, name, *_])
+                | ast.Compare(left=name, ops=[ast.In() | ast.NotIn()])
+            ):
+                found.append(name)
+            case _:
+                pass
+    return frozenset(
+        name.value for name in found if isinstance(name, ast.Constant) and isinstance(name.value, str)
+    )
 
 
 def _listed(names: Collection[str]) -> str:

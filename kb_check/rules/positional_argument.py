@@ -38,7 +38,9 @@ from kb_build.flow.types import (
     members,
 )
 from kb_check.calls import calls
+from kb_check.conversions import misfit
 from kb_check.findings import Edit, Finding, Fix
+from kb_check.given import parameter_taker
 from kb_check.made_here import bindings
 from kb_check.rule import Rule
 
@@ -206,7 +208,7 @@ def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
     # RNA's functions took all by place once: the order is that of the parameters, unless some are gone.
     parameter = by_name[rest[0]] if callee.is_rna and len(arguments) == len(callee.positional) + 1 else None
     gone = script.names.changed_parameters(path) if callee.is_rna else ()
-    if gone:
+    if gone or (parameter and _takes_other_things(script, call, parameter, extra)):
         parameter = None
     yield Finding(
         RULE.id, "error", script.span(extra),
@@ -216,6 +218,12 @@ def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
         path, (f"{path}({rest[0]})",),
         _naming(script, extra, parameter, sure=True) if parameter else None,
     )  # fmt: skip
+
+
+def _takes_other_things(script: Script, call: CallSite, parameter: Parameter, value: ast.expr) -> bool:
+    """Whether a parameter takes a thing that a value surely is not: what is given was meant of another."""
+    taker = parameter_taker(script, call.callee.symbol, parameter, is_rna=call.callee.is_rna)
+    return taker.kind == "pointer" and misfit(script, taker, value) is not None
 
 
 def _by_place(script: Script, call: CallSite) -> Fix | None:

@@ -53,17 +53,15 @@ def renaming(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:
     node = row.node.slice if isinstance(row.node, ast.Subscript) else row.node
     if not same_owner or not is_alike or not name or (edit := script.renamed(node, name)) is None:
         return None
-    if _is_refused(script, row, lacking.replacement):
+    if _is_refused(script, row, lacking.replacement) or not _is_reached(script, row, lacking):
         return None
-    sure = (
-        lacking.sure
-        and _takes_its_keywords(script, row.node, row, lacking)
-        and _is_reached(script, row, lacking)
-    )
+    sure = lacking.sure and _takes_its_keywords(script, row.node, row, lacking)
     if row.kind == "keyword":
         return Fix(f"Write {name}", (edit,), sure=sure and _is_of_right_callee(script, row))
     values = _values_beside(script, row, lacking)
-    return Fix(f"Write {name}", (edit, *(values or ())), sure=sure and values is not None)
+    is_refused = values is None and isinstance(_assigned(row), ast.Constant)
+    fix = Fix(f"Write {name}", (edit, *(values or ())), sure=sure and values is not None)
+    return None if is_refused else fix
 
 
 # Calls.
@@ -183,11 +181,17 @@ def _iterated(script: Script) -> dict[str, list[ast.expr]]:
 
 def _is_refused(script: Script, row: Resolution, replacement: str) -> bool:
     """Whether the right name surely does not take the value that is assigned: ``use_alpha = True`` is no alpha_mode."""
-    value = assigned(row.statement, row.node) if isinstance(row.node, ast.Attribute) else None
+    value = _assigned(row)
     symbol = script.api.symbols.symbol(replacement)
+    if row.kind == "store" and symbol is not None and "readonly" in symbol.flags:
+        return True
     if value is None or symbol is None or symbol.kind != "property":
         return False
     return misfit(script, property_taker(symbol), value) is not None
+
+
+def _assigned(row: Resolution) -> ast.expr | None:
+    return assigned(row.statement, row.node) if isinstance(row.node, ast.Attribute) else None
 
 
 def _values_beside(script: Script, row: Resolution, lacking: Lacking) -> tuple[Edit, ...] | None:

@@ -218,3 +218,9 @@ def test_a_function_of_a_module_takes_what_it_calls_self(rule_checker: Checker) 
     assert rule_checker.check(code.format("self, context")) == []
     (found,) = rule_checker.check(code.format("self, context, 1"), rules=["positional-argument"])
     assert found.span.line == 3
+
+
+def test_what_is_no_such_thing_gets_no_name(rule_checker: Checker) -> None:
+    code = "import bpy\nbpy.context.object.animation_data.nla_tracks.new('Walk')\n"
+    (found,) = rule_checker.check(code, rules=["positional-argument"])
+    assert (found.fix, "`prev` by name only" in found.message) == (None, True)

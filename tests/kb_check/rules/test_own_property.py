@@ -178,6 +178,7 @@ def test_comparisons_that_never_hold_are_warned_of(check: Check, line: str, coun
         "setattr(Settings, 'mo' + 'des', 1)",
         "Settings.modes = bpy.props.IntProperty()",
         "hasattr(s, 'modes')",
+        "def fill(one):\n    one.modes = 3",
         "KINDS.append(('THIRD', 'Third', ''))",
     ],
 )
@@ -185,6 +186,50 @@ def test_what_is_declared_out_of_sight_is_no_finding(check: Check, change: str) 
     line = "s.kind = 'THIRD'" if "KINDS" in change else "s.modes"
     assert check("own-property", f"{_CLASSES}{line}\n")
     assert check("own-property", f"{_CLASSES}{change}\n{line}\n") == []
+
+
+_PANEL = """\
+class VIEW3D_PT_grow(bpy.types.Panel):
+    bl_label, bl_space_type, bl_region_type = "Grow", "VIEW_3D", "UI"
+    def draw(self, context):
+        {}
+bpy.utils.register_class(VIEW3D_PT_grow)
+"""
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ('self.layout.operator("object.grow").count = 3', "takes no `count`. It declares `amount`, `kind`."),
+        ('self.layout.operator(OBJECT_OT_grow.bl_idname).count = 3', "takes no `count`"),
+        ('self.layout.operator(OBJECT_OT_grow.bl_idname).kind = "THIRD"', "none of the items"),
+        ('self.layout.operator(OBJECT_OT_grow.bl_idname).amount = 3', ""),
+        ('self.layout.prop(context.scene.settings, "modes")', "`Settings` has no `modes`"),
+        ('self.layout.prop(context.scene.settings, "kind")', ""),
+        ('self.layout.template_list("UI_UL_list", "", s, "part", s, "count")', "Closest: `parts`"),
+        ('self.layout.template_list("UI_UL_list", "", s, "parts", s, "count")', ""),
+        ('self.label(text="x")', "`VIEW3D_PT_grow` has no `label`. The layout has it: `layout.label`."),
+        ('self.bl_label', ""),
+    ],
+)  # fmt: skip
+def test_what_a_panel_shows_is_read(check: Check, line: str, message: str) -> None:
+    found = check("own-property", _CLASSES + _PANEL.format(line))
+    assert len(found) == bool(message)
+    assert all(message in finding.message for finding in found)
+
+
+def test_a_module_that_the_script_makes_is_known(check: Check, tmp_path: Path) -> None:
+    classes = _CLASSES.replace("object.grow", "garden.grow")
+    answers = run_statements(tmp_path, [classes, "bpy.ops.garden.grow()", "bpy.ops.garden.mow()"])
+    assert [bool(answer[0]) for answer in answers] == [False, False, True]
+    (found,) = check("own-property", f"{classes}bpy.ops.garden.grow()\nbpy.ops.garden.mow()\n")
+    assert found.message == "`bpy.ops.garden` has no `mow`: this script makes `bpy.ops.garden.grow`."
+
+
+def test_what_is_set_on_another_thing_is_no_proof(check: Check) -> None:
+    more = "part.modes = 1\nprint('modes')\n"
+    rows = check("own-property", f"{_CLASSES}{more}s.modes\n")
+    assert "`Settings` has no `modes`." in " ".join(finding.message for finding in rows)
 
 
 def test_errors_that_are_caught_are_no_finding(check: Check) -> None:

@@ -50,7 +50,6 @@ def test_a_value_that_went_for_good_is_one_note_a_file(rule_checker: Checker) ->
 @pytest.mark.parametrize(
     "given",
     [
-        "mat.transparency_method = 'Z_TRANSPARENCY'",
         "mat.transparency_method = kind",
         "mat.transparency_method = 'MASK' if kind else 'RAYTRACE'",
         "print(mat.transparency_method == 'MASK')",
@@ -63,6 +62,22 @@ def test_a_name_is_not_sure_where_its_values_went_too(rule_checker: Checker, giv
     found = list(_fixes(rule_checker, code))
     assert ["surface_render_method"] in [texts for _, texts, _ in found]
     assert not any(sure for *_, sure in found)
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "mat = bpy.data.materials.new('x')\nmat.transparency_method = 'Z_TRANSPARENCY'",
+        "tex = bpy.data.materials.new('x').node_tree.nodes.new('ShaderNodeTexVoronoi')\ntex.coloring = 'CELLS'",
+        "con = bpy.context.object.constraints.new('ARMATURE')\ncon.target = bpy.context.object",
+        "out = bpy.context.scene.compositing_node_group.nodes.new('CompositorNodeOutputFile')\n"
+        "out.file_slots[0].path = 'a'",
+    ],
+)
+def test_a_name_that_refuses_what_is_given_is_not_written(rule_checker: Checker, code: str) -> None:
+    found = rule_checker.check(f"import bpy\n{code}\n")
+    assert any(finding.severity == "error" for finding in found)
+    assert [finding.fix for finding in found if finding.severity == "error"] == [None] * len(found)
 
 
 @pytest.mark.parametrize(
