@@ -11,7 +11,17 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import ELEMENT, ELEMENTS, LAYER_ITEM
-from kb_build.flow.types import NONE, UNKNOWN, Instance, Mapping, Plain, Sequence, Tuple, members
+from kb_build.flow.types import (
+    NONE,
+    UNKNOWN,
+    Instance,
+    Mapping,
+    Plain,
+    Sequence,
+    Tuple,
+    members,
+    without_none,
+)
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import last_name
 from kb_check.calls import calls_by_node
@@ -255,7 +265,8 @@ def _parts(documented: str) -> list[str]:
 
 def layer_misfit(script: Script, target: ast.Subscript, value: ast.expr) -> Misfit | None:
     """Why an element of a BMesh refuses a value for one of its layers: ``loop[uv_layer] = (0, 0)``."""
-    owner, layer, kind = map(script.type_of, (target.value, target.slice, value))
+    owner, key, kind = map(script.type_of, (target.value, target.slice, value))
+    layer = without_none(key or UNKNOWN)  # the active one may be none; as a key it is one
     is_element = isinstance(owner, Instance) and owner.sure and owner.cls.startswith(f"{_BMESH_TYPES}BM")
     if not is_element or not isinstance(layer, Instance) or layer.cls != LAYER_ITEM or not layer.sure:
         return None

@@ -38,6 +38,7 @@ from kb_build.flow.types import (
     Sequence,
     Tuple,
     Type,
+    Union,
     Unknown,
     members,
     union,
@@ -329,6 +330,8 @@ class Api:
             return self._of_collection(kind, receiver, name)
         if not isinstance(receiver, Instance):
             return kind
+        if isinstance(kind, Union) and receiver.traits:
+            return union(self.as_held_by(member, receiver, name) for member in kind.members)
         if isinstance(kind, Instance):
             if name in SAME_CLASS and self.descends(receiver.cls, kind.cls):
                 return receiver

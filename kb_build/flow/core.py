@@ -228,7 +228,8 @@ class Core:
         """Remembers what is given to classes; ``declared`` where it is one of bpy.props, whatever they are."""
         for owner in members(owners):
             if isinstance(owner, ClassObject):
-                if self.api.member(owner.cls, name) is None:
+                member = self.api.member(owner.cls, name)
+                if member is None or (declared and member.symbol.owner != owner.cls):
                     self.registered[owner.cls, name] = kind
             elif declared and not isinstance(owner, (LocalClass, LocalInstance)):
                 self.registered[ANY, name] = kind

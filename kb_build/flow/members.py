@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
+from itertools import takewhile
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from kb_build.flow.api import ARRAY
@@ -46,6 +47,7 @@ from kb_build.flow.types import (
     literal,
     literal_text,
     union,
+    without_none,
 )
 from kb_build.symbols.api_names import COLLECTION, GROUPS, STRUCT
 from kb_build.symbols.api_names import TYPES as T
@@ -56,6 +58,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from kb_build.flow.types import Resolution
+    from kb_build.symbols.records import Symbol
 
 _GROUP_METHODS = frozenset({"add", "remove", "clear", "move"})
 _PYTHON: dict[str, type] = {"str": str, "int": int, "float": float, "bool": bool, "bytes": bytes}
@@ -121,6 +124,9 @@ class Members(Core):
     def _of_instance(self, kind: Instance, name: str, found: Lookup) -> None:
         found.sure = found.sure and kind.sure
         member = self.api.member(kind.cls, name)
+        if member is not None and (own := self._declared_over(member.symbol, kind.cls, name)) is not None:
+            found.types.append(own)
+            return
         if member is not None:
             found.symbols.append(member.symbol.path)
             trait = kind.trait(name)
@@ -209,6 +215,13 @@ class Members(Core):
                 return all(self.has(member, name) for member in kind.members)
             case _:
                 return False
+
+    def _declared_over(self, symbol: Symbol, cls: str, name: str) -> Type | None:
+        """A property that the script gives to a class in the place of an inherited one."""
+        if not self.registered or symbol.owner == cls:
+            return None
+        nearer = takewhile(lambda base: base != symbol.owner, self.api.lineage(cls))
+        return next((self.registered[base, name] for base in nearer if (base, name) in self.registered), None)
 
     def _registered(self, cls: str, name: str) -> Type | None:
         """A property that the script gives to a class of the API."""
@@ -392,6 +405,7 @@ class Members(Core):
             return FLOAT
         if kind.cls == "mathutils.Matrix":
             return Instance("mathutils.Vector")
+        key = without_none(key)
         if isinstance(key, Instance) and key.cls == LAYER_ITEM and key.traits:
             return key.traits[0][1]
         return self.api.element(kind)

@@ -245,3 +245,18 @@ def test_the_name_that_is_near_is_told(check: Check) -> None:
     )
     assert found.fix
     assert [edit.text for edit in found.fix.edits] == ["amount"]
+
+
+def test_a_property_takes_the_place_of_an_inherited_one(check: Check, tmp_path: Path) -> None:
+    start = "bpy.types.Object.tag = bpy.props.StringProperty()\n"
+    lines = [
+        "ob.tag = 'a'",
+        "ob.tag = 3",
+        "bpy.data.meshes['Cube'].tag = 'a'",
+        "bpy.data.meshes['Cube'].tag = True",
+    ]
+    answers = run_statements(tmp_path, [_CLASSES + start, *lines])
+    refused = [line for line, answer in zip(lines, answers[1:], strict=True) if answer[0]]
+    found = check("wrong-type", _CLASSES + start + "\n".join(lines))
+    first = (_CLASSES + start).count("\n") + 1
+    assert [lines[finding.span.line - first] for finding in found] == refused == lines[1:3]

@@ -68,6 +68,9 @@ loop = bm.faces[:][0].loops[0]
 loop[uv] = (0, 0)
 loop[uv].uv = (0, 0)
 loop[uv].uv = (0, 0, 0)
+active = bm.loops.layers.uv.active
+loop[active] = (0, 0)
+loop[active].uv = (0, 0)
 color = bm.loops.layers.color.new("color")
 loop = bm.faces[:][0].loops[0]
 loop[color] = 1.0
@@ -115,7 +118,7 @@ def test_what_is_found_is_what_blender_refuses(rule_checker: Checker, tmp_path: 
     refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
     found = rule_checker.check(_LINES, rules=_RULES)
     assert [one.span.line for one in found] == refused
-    assert len(refused) == 38
+    assert len(refused) == 39
 
 
 def test_an_iterable_of_an_annotation_may_be_a_list(rule_checker: Checker) -> None:
