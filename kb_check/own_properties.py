@@ -12,7 +12,7 @@ from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.computing import RUNNING, STORING, computing
 from kb_check.given import Given, assigned
-from kb_check.made_here import callee_path
+from kb_check.made_here import attributes, callee_path
 from kb_check.own_classes import own_classes
 from kb_check.own_declarations import OwnProperty, declared
 from kb_check.script import once_per_script
@@ -34,7 +34,8 @@ _SHOWING = {
     ),
     "template_list": ((2, 3), (4, 5)),
 }  # fmt: skip
-_OPERATORS = frozenset({f"{T}Operator", f"{T}Macro"})
+_MACRO = f"{T}Macro"
+_OPERATORS = frozenset({f"{T}Operator", _MACRO})
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,8 +101,13 @@ def own_properties(script: Script) -> _Known:
     return found
 
 
-def uses(script: Script) -> Iterator[Use]:
+@once_per_script
+def uses(script: Script) -> list[Use]:
     """The places that name properties of the script's classes, or that the script gives to Blender's, surely."""
+    return list(_uses(script))
+
+
+def _uses(script: Script) -> Iterator[Use]:
     own = own_properties(script)
     if not (own.classes or own.given):
         return
@@ -205,12 +211,13 @@ def _of_class(script: Script, own: OwnClass) -> OwnProperties:
 
 
 def _is_whole(script: Script, own: OwnClass) -> bool:
-    """Whether a class has no other attributes than those of its bodies, and those that the script sets by name."""
+    """Whether a class has no other attributes than those of its bodies, and those that the script sets by name.
+
+    A macro takes the keywords of its operators besides.
+    """
     is_computed = not computing(script).isdisjoint(STORING | RUNNING)
-    changes = own.given("__getattr__") or any(
-        node.attr == "__annotations__" for node in script.all(ast.Attribute)
-    )
-    return own.is_closed and own.is_registered and not is_computed and not changes
+    changes = own.given("__getattr__") or "__annotations__" in attributes(script)
+    return own.is_closed and own.is_registered and own.path != _MACRO and not is_computed and not changes
 
 
 def _operator(script: Script, own: OwnClass) -> str:

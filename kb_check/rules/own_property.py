@@ -46,7 +46,7 @@ _LAYOUT = "bpy.types.UILayout"
 _GROUP = "bpy.types.PropertyGroup"
 _MOST_NAMES = 8
 _NEAR = 0.75  # of difflib
-PYTHONS = frozenset({"bl_rna", "rna_type", "id_data", "name", "layout"})
+_EVERYWHERE = frozenset({"bl_rna", "rna_type", "id_data", "name"})  # of what RNA tells least
 # What is done to a property that nothing is assigned to, by its kind.
 _INSTEAD = {"collection": "`add`, `remove` and `clear` change it", "pointer": "set its own properties"}
 _COMPUTED = "it has `get`, and no `set`"
@@ -86,7 +86,7 @@ def _lost_operators(script: Script) -> Iterator[Finding]:
 
 def _lacks(script: Script, use: Use, of: OwnProperties) -> bool:
     """Whether nothing gives an attribute, or a keyword, to what the script declares."""
-    if not of.is_whole or use.name.startswith("__") or use.name in PYTHONS:
+    if not of.is_whole or use.name.startswith("__") or use.name in _EVERYWHERE:
         return False
     if isinstance(use.node, ast.keyword):
         return True
@@ -149,8 +149,8 @@ def _values(
     for part in parts:
         kind = script.type_of(part)
         texts = [*literal_texts(kind)] if kind is not None else []
-        if not texts or any(text in items for text in texts):
-            continue
+        if not texts or any(text in items for text in texts) or (is_compared and "" in texts):
+            continue  # an empty text is what Blender gives for what it does not know
         ends = " The comparison never matches it." if is_compared else ""
         near = get_close_matches(texts[0], items, 1, _NEAR)
         edit = script.renamed(part, near[0]) if near and isinstance(part, ast.Constant) else None

@@ -163,6 +163,7 @@ def test_what_is_kept_nowhere_is_lost(check: Check, tmp_path: Path) -> None:
         ("s.kind == 'THIRD'", 1),
         ("s.kind in {'THIRD', 'FIRST'}", 1),
         ("s.kind == 'FIRST'", 0),
+        ("s.kind == ''", 0),
         ("s.computed == 'THIRD'", 0),
     ],
 )
@@ -224,6 +225,20 @@ def test_a_module_that_the_script_makes_is_known(check: Check, tmp_path: Path) -
     assert [bool(answer[0]) for answer in answers] == [False, False, True]
     (found,) = check("own-property", f"{classes}bpy.ops.garden.grow()\nbpy.ops.garden.mow()\n")
     assert found.message == "`bpy.ops.garden` has no `mow`: this script makes `bpy.ops.garden.grow`."
+
+
+def test_a_macro_takes_what_its_operators_do(check: Check, tmp_path: Path) -> None:
+    macro = """\
+class OBJECT_OT_both(bpy.types.Macro):
+    bl_idname = "object.both"
+    bl_label = "Both"
+bpy.utils.register_class(OBJECT_OT_both)
+OBJECT_OT_both.define("OBJECT_OT_grow")
+bpy.ops.object.both(OBJECT_OT_grow={"amount": 2})
+"""
+    (answer,) = run_statements(tmp_path, [_CLASSES + macro])
+    assert not answer[0]
+    assert check("own-property", _CLASSES + macro) == []
 
 
 def test_what_is_set_on_another_thing_is_no_proof(check: Check) -> None:
