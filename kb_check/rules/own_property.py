@@ -46,7 +46,8 @@ _LAYOUT = "bpy.types.UILayout"
 _GROUP = "bpy.types.PropertyGroup"
 _MOST_NAMES = 8
 _NEAR = 0.75  # of difflib
-_EVERYWHERE = frozenset({"bl_rna", "rna_type", "id_data", "name"})  # of what RNA tells least
+# What RNA does not tell of every class that has it: preferences are drawn with a layout.
+_EVERYWHERE = frozenset({"bl_rna", "rna_type", "id_data", "name", "layout"})
 # What is done to a property that nothing is assigned to, by its kind.
 _INSTEAD = {"collection": "`add`, `remove` and `clear` change it", "pointer": "set its own properties"}
 _COMPUTED = "it has `get`, and no `set`"

@@ -227,6 +227,20 @@ def test_a_module_that_the_script_makes_is_known(check: Check, tmp_path: Path) -
     assert found.message == "`bpy.ops.garden` has no `mow`: this script makes `bpy.ops.garden.grow`."
 
 
+def test_preferences_are_drawn_with_a_layout(check: Check) -> None:
+    preferences = """\
+class Preferences(bpy.types.AddonPreferences):
+    bl_idname = __name__
+    size: bpy.props.IntProperty()
+    def draw(self, context):
+        self.layout.prop(self, "size")
+bpy.utils.register_class(Preferences)
+"""
+    assert check("own-property", _CLASSES + preferences) == []
+    (found,) = check("own-property", _CLASSES + preferences.replace('"size")', '"size", text=self.sizes)'))
+    assert "`Preferences` has no `sizes`" in found.message
+
+
 def test_a_macro_takes_what_its_operators_do(check: Check, tmp_path: Path) -> None:
     macro = """\
 class OBJECT_OT_both(bpy.types.Macro):
