@@ -13,6 +13,7 @@ nodes.new("Noise Texture")  # reported: that is its label
 tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
 tree.nodes.new("ShaderNodeBsdfPrincipled")  # reported: geometry node trees take none
 tree.nodes.new("GeometryNode")  # reported: the class that the others derive from
+tree.interface.new_socket("Height", in_out="INPUT", socket_type="FLOAT")  # reported: NodeSocketFloat
 ```
 """
 
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from kb_check.known_names import Lacking
     from kb_check.script import Script
 
+_SOCKET = "NodeSocket"
 _BLENDERS_OWN = re.compile(rf"({'|'.join(NODE_FAMILIES)}|NodeSocket)[A-Z]\w+")
 
 
@@ -71,12 +73,35 @@ def _check(script: Script) -> Iterator[Finding]:
             ):
                 yield _label_finding(script, node, called)
                 continue
+            if wanted != "type" and (cls := _socket_class(script, name)):
+                yield _socket_finding(script, call, node, cls)
+                continue
             yield from _unknown(script, node, name)
     for row in script.missing("class"):
         name = row.value
         is_own = name in script.own_identifiers or script.package.has(("bpy.types",), name)
         if not is_own and not script.names.still_works(f"{T}{name}"):
             yield from _unknown(script, row.node, name)
+
+
+def _socket_class(script: Script, name: str) -> str:
+    """The class of sockets that a type stands for: ``NodeSocketFloat`` of FLOAT, as zones call it; or empty."""
+    cls = f"{_SOCKET}{name.title()}"
+    if not name.isidentifier() or name.startswith(_SOCKET):
+        return ""
+    return last_name(
+        cls if script.api.is_class(f"{T}{cls}") else script.api.class_of_value(f"{T}{_SOCKET}", name)
+    )
+
+
+def _socket_finding(script: Script, call: CallSite, node: ast.Constant, cls: str) -> Finding:
+    edit = script.renamed(node, cls)
+    path = call.callee.symbol.path
+    return Finding(
+        RULE.id, "error", script.span(node),
+        f"`{path}` takes the name of a socket's class, {cls!r}, not {node.value!r}.", path,
+        (f"{T}{cls}",), Fix(f"Write {cls}", (edit,)) if edit else None,
+    )  # fmt: skip
 
 
 def _asking(script: Script) -> Iterator[CallSite]:
