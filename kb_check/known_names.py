@@ -22,7 +22,7 @@ from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup, for_reading
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     from kb_serve.rank.search import Searcher
     from kb_serve.reader import BaseReader
@@ -272,7 +272,7 @@ class KnownNames:
     def _own(self, owner: str) -> str:
         """The members of a class that has few."""
         own = [member for member in self.reader.members(owner) if not member.startswith("bl_rna_")]
-        return f" It has {_listed(own)}." if 0 < len(own) <= _FEW_MEMBERS else ""
+        return f" It has {listed(own)}." if 0 < len(own) <= _FEW_MEMBERS else ""
 
     def _no_part(  # noqa: PLR0913, PLR0917 - the parts of a sentence
         self,
@@ -287,7 +287,7 @@ class KnownNames:
         names = list(names)
         similar = self._alike(name, names) if similar is None else similar
         misspelt = [found for found in similar if is_misspelling(name, found)]
-        told = _closest(similar) or (f" {they} {_listed(names)}." if names else "")
+        told = _closest(similar) or (f" {they} {listed(names)}." if names else "")
         return Lacking(
             f"{owner}:{name}", f"{message} in Blender {self.version}.{told}", tuple(similar),
             misspelt[0] if len(misspelt) == 1 else "",
@@ -313,9 +313,10 @@ def _likely(name: str, meant: list[str], similar: list[str], labels: dict[str, s
 
 
 def _closest(names: list[str]) -> str:
-    return f" Closest: {_listed(names)}." if names else ""
+    return f" Closest: {listed(names)}." if names else ""
 
 
-def _listed(names: list[str]) -> str:
+def listed(names: Sequence[str]) -> str:
+    """Names in a message: the first ones, and how many there are."""
     more = f" … ({len(names)} in all)" if len(names) > 8 else ""
     return ", ".join(f"`{name}`" for name in names[:8]) + more

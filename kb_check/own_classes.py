@@ -70,9 +70,13 @@ class OwnClass:
     def attributes(self) -> Iterator[tuple[str, ast.expr]]:
         """The attributes that are surely given, each with its value."""
         for name in self.names():
-            statement = self.given(name)
-            if isinstance(statement, (ast.Assign, ast.AnnAssign)) and statement.value is not None:
-                yield name, statement.value
+            if (value := self.value(name)) is not None:
+                yield name, value
+
+    def value(self, name: str) -> ast.expr | None:
+        """The value that an attribute is surely given."""
+        statement = self.given(name)
+        return statement.value if isinstance(statement, (ast.Assign, ast.AnnAssign)) else None
 
     def names(self) -> list[str]:
         """The names of all that the bodies give, first those of its own."""

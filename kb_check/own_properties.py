@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from kb_check.own_classes import OwnClass
     from kb_check.script import Script
 
-_LAYOUT = f"{T}UILayout"
+LAYOUT = f"{T}UILayout"
 # What shows properties: the places of a thing and of the name of its property.
 _SHOWING = {
     **dict.fromkeys(
@@ -158,7 +158,7 @@ def _use(own: _Known, script: Script, node: ast.Attribute, kind: Type) -> Use | 
 def _shown(own: _Known, script: Script, call: ast.Call) -> Iterator[Use]:
     """The properties of the script's things that a layout shows."""
     places = _SHOWING.get(call.func.attr, ()) if isinstance(call.func, ast.Attribute) else ()
-    if not places or callee_path(script, call) != f"{_LAYOUT}.{ast.unparse(call.func).rpartition('.')[2]}":
+    if not places or callee_path(script, call) != f"{LAYOUT}.{ast.unparse(call.func).rpartition('.')[2]}":
         return
     for owner, name in places:
         text = call.args[name] if len(call.args) > name else None
@@ -221,8 +221,7 @@ def _is_whole(script: Script, own: OwnClass) -> bool:
 
 
 def _operator(script: Script, own: OwnClass) -> str:
-    statement = own.given("bl_idname")
-    value = statement.value if isinstance(statement, (ast.Assign, ast.AnnAssign)) else None
+    value = own.value("bl_idname")
     if own.path not in _OPERATORS or not isinstance(value, ast.Constant) or not isinstance(value.value, str):
         return ""
     path = f"{OPERATORS}{value.value}"

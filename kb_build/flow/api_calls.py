@@ -172,6 +172,7 @@ class ApiCalls(ScriptCalls):
                 self.resolve(key, "keyword", key.value, missing=(path,))
 
     def _value(self, symbol: Symbol, parameter: Parameter, node: ast.expr) -> None:
+        sources = (f"{symbol.path}({parameter.name})",)
         if isinstance(node, ast.Dict) and (part := part_of_macro(parameter)):
             self._macro_part(part, node)
         if parameter.enum_items:
@@ -179,14 +180,14 @@ class ApiCalls(ScriptCalls):
             for item in nodes:
                 for constant in constants(item) if isinstance(item, (ast.Constant, ast.IfExp)) else ():
                     if constant in self.here.types:  # else it is of a branch for other versions
-                        self.resolve_value(constant, constant.value, (symbol.path,), parameter.name)
+                        self.resolve_value(constant, constant.value, sources)
                 if isinstance(item, ast.Name):
-                    self.check_carried(item, (symbol.path,), parameter.name)
+                    self.check_carried(item, sources)
         elif isinstance(node, ast.Name) and CLASS_NAMES.get(symbol.path) == parameter.name:
             self.here.resolutions.pop(node, None)
             text = self.carried_text(node)
             if text and not self.api.is_class(T + text):
-                self.resolve(node, "class", text, missing=(f"{symbol.path}({parameter.name})",))
+                self.resolve(node, "class", text, missing=sources)
 
     def _decided(self, result: Type, symbol: Symbol, call: ReadCall) -> Type:
         """A result as its arguments decide it: ``modifiers.new("x", 'CLOTH')`` is a ClothModifier."""

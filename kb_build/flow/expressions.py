@@ -453,11 +453,11 @@ class Expressions(Members):
         if use == "value" and isinstance(node, (ast.Name, ast.Subscript)):
             self.check_carried(node, source)
 
-    def check_carried(self, node: ast.expr, sources: tuple[str, ...], parameter: str = "") -> None:
+    def check_carried(self, node: ast.expr, sources: tuple[str, ...]) -> None:
         """Records a text that a name or an item holds, where the enumeration that it is given to lacks it."""
         text = self.carried_text(node)
         if text is not None:
-            self.resolve_value(node, text, sources, parameter, only_lacking=True)
+            self.resolve_value(node, text, sources, only_lacking=True)
 
     def carried_text(self, node: ast.expr) -> str | None:
         """The text that a name or an item surely holds, though it is written elsewhere."""
@@ -497,25 +497,23 @@ class Expressions(Members):
                 return ()
         return tuple(found)
 
-    def resolve_value(  # noqa: PLR0913 - what a value is given to
+    def resolve_value(
         self,
         node: ast.expr,
         value: object,
         sources: tuple[str, ...],
-        parameter: str = "",
         *,
         use: ResolutionKind = "value",
         only_lacking: bool = False,
     ) -> None:
-        """Records a text as one of the values of properties, or of a parameter of functions."""
+        """Records a text as one of the values of properties, or of parameters, ``function(parameter)``."""
         if not isinstance(value, str):
             return
         having: list[str] = []
         lacking: list[str] = []
         unsure = False
         for source in sources:
-            path, argument = plain_path(source), parameter or argument_of(source)
-            symbol = self.api.symbols.symbol(path)
+            symbol, argument = self.api.symbols.symbol(plain_path(source)), argument_of(source)
             if symbol is None:
                 continue
             items = symbol.enum_items
@@ -523,8 +521,9 @@ class Expressions(Members):
             if argument:
                 found = symbol.parameter(argument)
                 items, computed = (found.enum_items, found.is_open) if found else ((), False)
-            name = f"{path}({argument})" if argument else path
-            is_listed = any(item.identifier == value for item in items) or value in MORE_VALUES.get(name, ())
+            is_listed = any(item.identifier == value for item in items) or value in MORE_VALUES.get(
+                source, ()
+            )
             are_classes = bool(items) and all(self.api.is_class(T + item.identifier) for item in items)
             # Of classes, those of add-ons are taken as well.
             is_listed = is_listed or (are_classes and not self.api.is_class(T + value))
@@ -535,9 +534,9 @@ class Expressions(Members):
                 and not STAND_INS.issuperset(item.identifier for item in items)
             )
             if is_listed or not is_judged:
-                having.append(name)
+                having.append(source)
             elif are_classes or not computed:
-                lacking.append(name)
+                lacking.append(source)
             else:
                 unsure = True
         if only_lacking:

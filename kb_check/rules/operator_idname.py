@@ -37,8 +37,7 @@ def _check(script: Script) -> Iterator[Finding]:
     for own in own_classes(script):
         if own.path not in _OPERATORS or not own.is_final:
             continue
-        statement = own.given("bl_idname")
-        node = statement.value if isinstance(statement, (ast.Assign, ast.AnnAssign)) else None
+        node = own.value("bl_idname")
         if not isinstance(node, ast.Constant) or not isinstance(node.value, str) or node in seen:
             continue
         seen.add(node)

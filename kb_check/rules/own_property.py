@@ -28,23 +28,22 @@ from typing import TYPE_CHECKING
 from kb_build.flow.core import ANY
 from kb_build.flow.types import UNKNOWN, Instance, LocalInstance, literal_texts, members
 from kb_check.findings import Finding, Fix
+from kb_check.known_names import listed
 from kb_check.made_here import attributes
-from kb_check.own_properties import own_properties, uses
+from kb_check.own_properties import LAYOUT, own_properties, uses
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
 from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
+    from collections.abc import Iterator
 
     from kb_check.findings import Severity
     from kb_check.own_declarations import OwnProperty
     from kb_check.own_properties import OwnProperties, Use
     from kb_check.script import Script
 
-_LAYOUT = "bpy.types.UILayout"
 _GROUP = "bpy.types.PropertyGroup"
-_MOST_NAMES = 8
 _NEAR = 0.75  # of difflib
 # What RNA does not tell of every class that has it: preferences are drawn with a layout.
 _EVERYWHERE = frozenset({"bl_rna", "rna_type", "id_data", "name", "layout"})
@@ -81,7 +80,7 @@ def _lost_operators(script: Script) -> Iterator[Finding]:
         owner = ast.unparse(node.value) if isinstance(node.value, ast.Attribute) else ""
         if owner in modules and not script.package.has((owner,), node.attr) and not is_tried(script, node):
             made = [path for path in own if path.startswith(f"{owner}.")]
-            told = f"`{owner}` has no `{node.attr}`: this script makes {_listed(made)}."
+            told = f"`{owner}` has no `{node.attr}`: this script makes {listed(made)}."
             yield Finding(RULE.id, "error", script.name_span(node), told, f"{owner}.{node.attr}")
 
 
@@ -112,7 +111,7 @@ def _may_be_set(script: Script, name: str, of: OwnProperties) -> bool:
 def _absent(script: Script, use: Use, of: OwnProperties) -> Iterator[Finding]:
     near = get_close_matches(use.name, of.properties, 1, _NEAR)
     names = [name for name, one in of.properties.items() if one.kind]
-    told = f"Closest: `{near[0]}`." if near else f"It declares {_listed(names)}." if names else ""
+    told = f"Closest: `{near[0]}`." if near else f"It declares {listed(names)}." if names else ""
     edit = script.renamed(use.node, near[0]) if near else None
     fix = Fix(f"Write {near[0]}", (edit,)) if edit else None
     severity: Severity = "error"
@@ -120,7 +119,7 @@ def _absent(script: Script, use: Use, of: OwnProperties) -> Iterator[Finding]:
         what = f"`{of.operator}`, which this script makes, takes no `{use.name}`."
     elif not use.is_stored:
         what = f"`{of.own.node.name}` has no `{use.name}`."
-        if script.api.member(_LAYOUT, use.name) and script.api.member(of.own.path, "layout"):
+        if script.api.member(LAYOUT, use.name) and script.api.member(of.own.path, "layout"):
             told = f"The layout has it: `layout.{use.name}`."
     elif of.own.path == _GROUP and not _is_read_beside(script, use.node):
         what = f"`{of.own.node.name}` declares no `{use.name}`: what is set is lost when it is read again."
@@ -157,7 +156,7 @@ def _values(
         edit = script.renamed(part, near[0]) if near and isinstance(part, ast.Constant) else None
         yield Finding(
             RULE.id, "warning" if is_compared else "error", script.span(part),
-            f"{texts[0]!r} is none of the items of `{found.path}`: it takes {_listed(items)}.{ends}", found.path, (),
+            f"{texts[0]!r} is none of the items of `{found.path}`: it takes {listed(items)}.{ends}", found.path, (),
             Fix(f"Write {near[0]}", (edit,)) if near and edit else None,
         )  # fmt: skip
 
@@ -195,11 +194,6 @@ def _asked(script: Script) -> frozenset[str]:
     return frozenset(
         name.value for name in found if isinstance(name, ast.Constant) and isinstance(name.value, str)
     )
-
-
-def _listed(names: Collection[str]) -> str:
-    shown = ", ".join(f"`{name}`" for name in [*names][:_MOST_NAMES])
-    return f"{shown} … ({len(names)} in all)" if len(names) > _MOST_NAMES else shown
 
 
 RULE = Rule("own-property", "error", "A property that the script declares, used for what it is not", _check)

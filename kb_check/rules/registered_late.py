@@ -100,8 +100,7 @@ def _needs(script: Script, one: OwnClass, own: dict[str, OwnClass]) -> Iterator[
 
 
 def _text(script: Script, one: OwnClass, name: str) -> tuple[ast.expr, str] | None:
-    statement = one.given(name)
-    node = statement.value if isinstance(statement, (ast.Assign, ast.AnnAssign)) else None
+    node = one.value(name)
     value = written(script, node) if node is not None else None
     text = value.value if isinstance(value, ast.Constant) else None
     return (node, text) if node is not None and isinstance(text, str) else None
