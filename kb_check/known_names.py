@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import distinct_words
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 _MOST_NAMED = 3
 _FEW_MEMBERS = 8
+_KEPT = 512  # names that a class lacks, as one is often used many times
 # Methods of all structures, which are plurals of what properties are called.
 _PLURALS = frozenset({"items", "keys", "values"})
 _PART = frozenset("([:")  # in the path of a parameter, a socket, an item
@@ -61,6 +62,7 @@ class KnownNames:
         self._operators = OperatorWords(reader)
         self._enum_values = EnumValues(reader)
         self._members: dict[tuple[str, str], RemovedSymbol | None] = {}
+        self._lacking = lru_cache(maxsize=_KEPT)(self._lacking_member)
 
     @property
     def version(self) -> str:
@@ -119,6 +121,9 @@ class KnownNames:
 
     def member(self, owner: str, name: str, *, reading: bool = True) -> Lacking:
         """A member that a class or module lacks; ``reading`` unless it is assigned to."""
+        return self._lacking(owner, name, reading=reading)
+
+    def _lacking_member(self, owner: str, name: str, *, reading: bool) -> Lacking:
         removed = self._member(owner, name) or self._lookup.of_path(f"{owner}.{name}")
         removed = removed or self._lookup.below(owner, name)
         if removed:

@@ -27,7 +27,8 @@ _NODES = """
 tree = bpy.data.materials.new("A").node_tree
 zones = bpy.data.node_groups.new("A", "GeometryNodeTree")
 """
-# Kind of script → what it begins with, and what it repeats, with a number for `#`, and the next for `#_`.
+# Kind of script → what it begins with, and what it repeats, with a number for `#`, the next for `#_`, and for `@` a
+# letter that no script before had: what is said of a name is kept.
 _KINDS = {
     "settings of nodes": (
         _NODES,
@@ -88,7 +89,7 @@ _KINDS = {
         "",
         """
         try:
-            bpy.context.scene.nothing#
+            bpy.context.scene.nothing@#
         except AttributeError:
             pass
         bpy.context.object.rigid_body.mass = 1
@@ -97,8 +98,8 @@ _KINDS = {
     "operators that are gone": (
         "",
         """
-        bpy.ops.nothing.at_all#()
-        bpy.ops.object.nothing#()
+        bpy.ops.nothing.at_all@#()
+        bpy.ops.object.nothing@#()
         """,
     ),
     "paths of what is made": (
@@ -176,12 +177,13 @@ def test_a_script_that_is_four_times_as_long_takes_about_four_times_the_work(
 ) -> None:
     begin, part = map(dedent, _KINDS[kind])
 
-    def work(times: int) -> int:
-        code = "\n".join(["import bpy, bmesh", begin, *(_numbered(part, n) for n in range(times))])
+    def work(letter: str, times: int) -> int:
+        parts = (_numbered(part.replace("@", letter), n) for n in range(times))
+        code = "\n".join(["import bpy, bmesh", begin, *parts])
         return _counted(lambda: _check(checker, code))
 
-    work(_FEW)  # what is kept of the base
-    few, many = work(_FEW), work(_FEW * _TIMES)
+    work("a", _FEW)  # what is kept of the base
+    few, many = work("b", _FEW), work("c", _FEW * _TIMES)
     assert many < few * _MOST_GROWTH, f"{few:,} steps, and {many:,} for four times the script"
 
 

@@ -24,16 +24,10 @@ _LONG = 4  # letters of a word that may stand at the end of another: ``file``, o
 
 
 class _Words(NamedTuple):
-    """The stems of an operator's words and of its module's, and its words as they are."""
+    """The stems of an operator's words and of its module's."""
 
     own: frozenset[str]
     module: frozenset[str]
-    written: tuple[str, ...]
-
-    def has(self, word: str) -> bool:
-        """Whether a stem is among them, or at the end of one."""
-        is_end = len(word) >= _LONG and any(other.endswith(word) for other in self.written)
-        return word in self.own or word in self.module or is_end
 
 
 class OperatorWords:
@@ -86,13 +80,20 @@ class OperatorWords:
     def _nearest(self, said: frozenset[str], module: frozenset[str]) -> tuple[tuple[int, int], list[str]]:
         """How many words are too many or too few at best, how many of these too few, and the operators."""
         costs: dict[str, tuple[int, int]] = {}
-        for path, own in self._words.items() if said else ():
-            if all(map(own.has, said)):
-                lacking = len(module - own.own - own.module)
-                costs[path] = lacking + len(own.own - said - module - _OF_ALL), lacking
+        for path in sorted(frozenset.intersection(*map(self._saying, said))) if said else ():
+            own = self._words[path]
+            lacking = len(module - own.own - own.module)
+            costs[path] = lacking + len(own.own - said - module - _OF_ALL), lacking
         best = min(costs.values(), default=(len(said | module), 0))
         found = [path for path, cost in costs.items() if cost == best]
         return best, found
+
+    def _saying(self, word: str) -> frozenset[str]:
+        """The operators that have a stem among their words or their module's, or at the end of a word."""
+        found = self._by_stem.get(word, frozenset())
+        if len(word) < _LONG:
+            return found
+        return found.union(*(paths for other, paths in self._by_word.items() if other.endswith(word)))
 
     def beginning(self, name: str) -> list[str]:
         """The operators whose own names begin with the words of a name: ``ptcache.bake_all`` for ``bake``."""
@@ -107,9 +108,17 @@ class OperatorWords:
     @cached_property
     def _words(self) -> dict[str, _Words]:
         return {
-            path: _Words(_stems(own), _stems(words(path.split(".")[2])), tuple(own))
+            path: _Words(_stems(own), _stems(words(path.split(".")[2])))
             for path, own in self._own_words.items()
         }
+
+    @cached_property
+    def _by_stem(self) -> dict[str, frozenset[str]]:
+        return _grouped((word, path) for path, own in self._words.items() for word in own.own | own.module)
+
+    @cached_property
+    def _by_word(self) -> dict[str, frozenset[str]]:
+        return _grouped((word, path) for path, own in self._own_words.items() for word in own)
 
 
 def same_operator_words(one: str, other: str) -> bool:
@@ -119,3 +128,11 @@ def same_operator_words(one: str, other: str) -> bool:
 
 def _stems(spoken: Iterable[str]) -> frozenset[str]:
     return frozenset(_SAME.get(one, one) for one in map(stem, spoken))
+
+
+def _grouped(pairs: Iterable[tuple[str, str]]) -> dict[str, frozenset[str]]:
+    """What stands with each first one of some pairs."""
+    found: dict[str, set[str]] = {}
+    for key, value in pairs:
+        found.setdefault(key, set()).add(value)
+    return {key: frozenset(values) for key, values in found.items()}
