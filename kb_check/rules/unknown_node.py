@@ -10,6 +10,7 @@ nodes.new("ShaderNodeTexNoise")
 for kind in ("ShaderNodeMix", "ShaderNodeTexMusgrave"):
     nodes.new(kind)  # reported: the second
 nodes.new("Noise Texture")  # reported: that is its label
+material.node_tree.nodes.new("BSDF_PRINCIPLED")  # reported: the words of ShaderNodeBsdfPrincipled
 tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
 tree.nodes.new("ShaderNodeBsdfPrincipled")  # reported: geometry node trees take none
 tree.nodes.new("GeometryNode")  # reported: the class that the others derive from
@@ -21,9 +22,11 @@ from __future__ import annotations
 
 import ast
 import re
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import CLASS_NAMES
+from kb_build.index.analysis import key, words
 from kb_build.symbols.api_names import NODE
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import NODE_FAMILIES, alike_nodes
@@ -75,6 +78,9 @@ def _check(script: Script) -> Iterator[Finding]:
                 continue
             if wanted != "type" and (cls := _socket_class(script, name)):
                 yield _socket_finding(script, call, node, cls)
+                continue
+            if wanted == "type" and (alike := _of_the_same_words(script, call, name)):
+                yield _alike_finding(script, node, alike)
                 continue
             yield from _unknown(script, node, name)
     for row in script.missing("class"):
@@ -144,20 +150,50 @@ def _by_label(script: Script) -> dict[str, list[Symbol]]:
     return found
 
 
+def _of_the_same_words(script: Script, call: CallSite, name: str) -> list[Symbol]:
+    """The nodes of the tree whose name, with or without its family, or whose label has the words of a name that begins
+    as none of Blender's own do: of ``BSDF_PRINCIPLED``, ``NodeEmission``, ``VALTORGB``. In a tree that is not known an
+    add-on's node may be called so.
+    """
+    tree = tree_added_to(script, call)
+    if not tree or _BLENDERS_OWN.fullmatch(name) or name in own_names(script):
+        return []
+    return [symbol for symbol in _by_words(script).get(_words_of(name), []) if tree in symbol.trees]
+
+
+@once_per_script
+def _by_words(script: Script) -> dict[frozenset[str], list[Symbol]]:
+    found: dict[frozenset[str], list[Symbol]] = {}
+    for symbol in chain.from_iterable(_by_label(script).values()):
+        name = last_name(symbol.path)
+        family = next((one for one in NODE_FAMILIES if name.startswith(one)), "")
+        behind = name.removeprefix(family)
+        spoken = {_words_of(called) for called in (name, behind, symbol.label)}
+        for called in {*spoken, frozenset({key(behind)}), frozenset({key(symbol.label)})}:
+            found.setdefault(called, []).append(symbol)
+    return found
+
+
+def _words_of(name: str) -> frozenset[str]:
+    return frozenset(words(name.removeprefix(T))) - {"node"}
+
+
+def _alike_finding(script: Script, node: ast.Constant, alike: list[Symbol]) -> Finding:
+    names = [last_name(symbol.path) for symbol in alike]
+    told = f"No node is called {node.value!r}: `nodes.new` takes {' or '.join(f'`{name}`' for name in names)}."
+    edit = script.renamed(node, names[0]) if len(names) == 1 else None
+    fix = Fix(f"Write {names[0]}", (edit,)) if edit else None
+    paths = tuple(symbol.path for symbol in alike)
+    return Finding(RULE.id, "error", script.span(node), told, paths[0], paths, fix)
+
+
 def _label_finding(script: Script, node: ast.Constant, called: list[Symbol]) -> Finding:
     names = [last_name(symbol.path) for symbol in called]
     told = f"{node.value!r} is what menus call {' or '.join(f'`{name}`' for name in names)}: `nodes.new` takes that."
     edit = script.renamed(node, names[0]) if len(names) == 1 else None
     fix = Fix(f"Write {names[0]}", (edit,), sure=True) if edit else None
-    return Finding(
-        RULE.id,
-        "error",
-        script.span(node),
-        told,
-        called[0].path,
-        tuple(symbol.path for symbol in called),
-        fix,
-    )
+    paths = tuple(symbol.path for symbol in called)
+    return Finding(RULE.id, "error", script.span(node), told, paths[0], paths, fix)
 
 
 def _refused(script: Script, call: CallSite, node: ast.expr, name: str) -> Iterator[Finding]:

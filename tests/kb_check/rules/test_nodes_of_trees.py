@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from statements_in_blender import run_statements
 
+from kb_build.index.analysis import words
 from kb_build.symbols.paths import last_name
 
 if TYPE_CHECKING:
@@ -63,6 +64,27 @@ def test_a_label_is_reported_and_mended(rule_checker: Checker, check: Check, tmp
         *(f"{pairs[line - 1 - len(made)][0].lower()}.nodes.new({text})" for line, text in fixes.items()),
     ]
     assert [error for error, *_ in run_statements(tmp_path, mended) if error] == []
+
+
+def test_a_name_of_the_same_words_is_reported(
+    rule_checker: Checker, check: Check, tmp_path: Path
+) -> None:
+    api = rule_checker.api
+    nodes = [symbol for cls in api.descendants("bpy.types.Node") if (symbol := api.symbols.symbol(cls))]
+    lines = [
+        "import bpy",
+        *(f"{kind.lower()} = bpy.data.node_groups.new('tree', '{kind}')" for kind in _TREES),
+    ]
+    for symbol in nodes:
+        for tree in sorted({*symbol.trees} & {*_TREES}):
+            behind = last_name(symbol.path).removeprefix(tree.removesuffix("Tree"))
+            snake = "_".join(words(behind)).upper()
+            said = (f"Node{behind.removeprefix('Node')}", snake, symbol.path)
+            lines += [f"{tree.lower()}.nodes.new({name!r})" for name in said]
+    answers = run_statements(tmp_path, lines)
+    refused = {place for place, (error, *_) in enumerate(answers, 1) if error}
+    assert len(refused) > 2 * len(nodes)
+    assert {finding.span.line for finding in check("unknown-node", "\n".join(lines))} == refused
 
 
 def test_a_label_that_the_script_calls_a_node_of_its_own_is_left_alone(check: Check) -> None:
