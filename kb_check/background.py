@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import ast
+from itertools import chain
 from typing import TYPE_CHECKING
 
+from kb_build.flow.trees import called_name, children
 from kb_check.line_ranges import LineRanges
 
 if TYPE_CHECKING:
@@ -13,6 +15,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _BACKGROUND = "bpy.app.background"
+_APART = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
 
 
 def is_called_by_others(script: Script) -> bool:
@@ -45,11 +48,34 @@ def _given_context(script: Script) -> Iterator[tuple[int, int]]:
 
 
 def _uncalled(script: Script) -> Iterator[tuple[int, int]]:
-    """The lines of functions that the script does not call itself."""
-    called = {node.func.id for node in script.all(ast.Call) if isinstance(node.func, ast.Name)}
+    """The lines of functions that the script does not call itself when it is run."""
+    called = _called(script)
     for node in script.all(ast.FunctionDef, ast.AsyncFunctionDef):
         if node.name not in called:
             yield node.lineno, node.end_lineno or node.lineno
+
+
+def _called(script: Script) -> set[str]:
+    """The functions that the module calls, outside of any, and those that these call."""
+    defined: dict[str, list[ast.AST]] = {}
+    for node in script.all(ast.FunctionDef, ast.AsyncFunctionDef):
+        defined.setdefault(node.name, []).append(node)
+    called: set[str] = set()
+    waiting: list[ast.AST] = [script.tree]
+    for each in waiting:
+        names = {called_name(node) for node in _run_with(each)} - called
+        called |= names
+        waiting += chain.from_iterable(defined.get(name, ()) for name in names)
+    return called
+
+
+def _run_with(node: ast.AST) -> Iterator[ast.AST]:
+    """What lies in a module or function, but for what is only defined there."""
+    waiting = children(node)
+    for each in waiting:
+        yield each
+        if not isinstance(each, _APART):
+            waiting += children(each)
 
 
 def _overrides(node: ast.With | ast.AsyncWith) -> bool:

@@ -319,15 +319,6 @@ def alias(script: Script, node: ast.expr) -> ast.expr:
     return values[0] if len(values) == 1 and isinstance(values[0], ast.Attribute) else node
 
 
-def read_pointer(script: Script, node: ast.expr) -> ast.Attribute | None:
-    """The attribute that an expression reads, itself or by the only value of a name that is only read from."""
-    if isinstance(node, ast.Name) and node.id not in asked_names(script):
-        values = bindings(script).get(node.id, [])
-        value = values[0] if len(values) == 1 else None
-        return value if isinstance(value, ast.Attribute) else None
-    return node if isinstance(node, ast.Attribute) else None
-
-
 @once_per_script
 def asked_names(script: Script) -> frozenset[str]:
     """The names and attributes that are used for more than to read from them, or to hold them."""

@@ -1,4 +1,4 @@
-"""Something is read from what an empty file does not have, and nothing in the script makes it.
+"""Something is read from what an empty or a new file does not have, and nothing in the script makes it.
 
 ```python
 bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -6,9 +6,15 @@ bpy.context.scene.world.color = (0, 0, 0)  # reported: scene.world = bpy.data.wo
 bpy.data.objects["Cube"].hide_render = True  # reported: that of the startup file is gone
 ```
 
-Not reported: what may run before the file is emptied; scripts that fill it anywhere, that run operators which may, that
-compute names or import modules which may change scenes; what the script asks for (``if scene.world:``), and what stands
-in a ``try``.
+Of what a new file has not either, a script that empties none is told, too, as a note: it may be run with another file.
+
+```python
+bpy.context.scene.compositing_node_group.nodes.clear()  # reported; `use_nodes = True` makes no tree since 5.0
+```
+
+Not reported: what may run before the file is emptied; in a file that is not emptied, add-ons and what classes do;
+scripts that fill it anywhere, that run operators which may, that compute names or import modules which may change
+scenes; what the script asks for (``if scene.world:``), and what stands in a ``try``.
 """
 
 from __future__ import annotations
@@ -19,6 +25,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES as T
+from kb_check.background import is_called_by_others, lines_of_others
 from kb_check.emptied import empties_only, is_emptied_before
 from kb_check.findings import Finding
 from kb_check.made_here import (
@@ -28,18 +35,20 @@ from kb_check.made_here import (
     knows_all,
     member_path,
     named_words,
-    read_pointer,
     stored_names,
     texts_but_keys,
 )
+from kb_check.read_pointers import read_from
 from kb_check.rule import Rule
 from kb_check.script import once_for_each
 from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Container, Iterable, Iterator
 
     from kb_build.flow.types import Resolution
+    from kb_check.findings import Severity
+    from kb_check.read_pointers import PointerRead
     from kb_check.script import Script
 
 # Operators that fill none of what is looked for; those that are called read an empty file.
@@ -54,12 +63,13 @@ _EDITING = (
 class _Empty:
     """What an empty file does not have: what may be done beside, and what fills it.
 
-    ``asked`` are names that ask for it besides its own.
+    ``asked`` are names that ask for it besides its own; ``is_new`` says that a new file does not have it either.
     """
 
     beside: re.Pattern[str]
     filled_by: str
     asked: frozenset[str] = frozenset()
+    is_new: bool = False
 
 
 _ACTIVE = _Empty(
@@ -75,11 +85,18 @@ _EMPTY = {
     f"{T}Scene.compositing_node_group": _Empty(
         re.compile(rf"(?!bpy\.ops\.node\.new_compositing)({_PLAIN}|{_EDITING})"),
         'scene.compositing_node_group = bpy.data.node_groups.new("Compositing", "CompositorNodeTree")',
+        is_new=True,
+    ),
+    f"{T}Scene.rigidbody_world": _Empty(
+        re.compile(rf"(?!bpy\.ops\.rigidbody\.)({_PLAIN}|{_EDITING})"),
+        "bpy.ops.rigidbody.world_add()",
+        is_new=True,
     ),
     f"{T}LayerObjects.active": _ACTIVE,
     f"{T}Context.object": _ACTIVE,
     f"{T}Context.active_object": _ACTIVE,
 }
+_NEW = {path: empty for path, empty in _EMPTY.items() if empty.is_new}
 # What the startup file has that an empty one has not, and the operators that bring nothing of the name.
 _STARTUP = {
     "objects": {"Cube", "Camera", "Light"}, "meshes": {"Cube"}, "cameras": {"Camera"}, "lights": {"Light"},
@@ -89,27 +106,36 @@ _BRINGING_NOTHING = re.compile(_PLAIN)
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    if empties_only(script) and knows_all(script):
-        yield from _pointers(script)
+    if not knows_all(script):
+        return
+    if empties_only(script):
+        read = _first(one for one in _read(script, _EMPTY) if _is_run_later(script, one.row, one.node))
+        for path, node in read.items():
+            yield _empty_finding(script, node, path, "an empty", "warning")
         yield from _looked_up(script)
+    elif not is_called_by_others(script) and "libraries" not in named_words(script):
+        given = lines_of_others(script)
+        read = _first(one for one in _read(script, _NEW) if one.node.lineno not in given)
+        for path, node in read.items():
+            yield _empty_finding(script, node, path, "a new", "note")
 
 
-def _pointers(script: Script) -> Iterator[Finding]:
-    reported: set[str] = set()
-    for row in script.resolutions("attribute", "store"):
-        node = row.node
-        pointer = read_pointer(script, node.value) if isinstance(node, ast.Attribute) else None
-        path = member_path(script, pointer) if pointer else ""
-        if path not in _EMPTY or path in reported or not isinstance(node, ast.Attribute):
-            continue
-        if _stays_empty(script, path) and _is_run_later(script, row, node):
-            reported.add(path)
-            yield Finding(
-                RULE.id, "warning", script.name_span(node),
-                f"`{path}` is None in an empty file, and nothing in this script fills it: "
-                f"`{_EMPTY[path].filled_by}` does.",
-                path,
-            )  # fmt: skip
+def _read(script: Script, empty: Container[str]) -> Iterator[PointerRead]:
+    """What is read from pointers that the script leaves empty."""
+    return (one for one in read_from(script, empty) if _stays_empty(script, one.path))
+
+
+def _first(found: Iterable[PointerRead]) -> dict[str, ast.Attribute]:
+    """Path → where it is read first."""
+    first: dict[str, ast.Attribute] = {}
+    for one in found:
+        first.setdefault(one.path, one.node)
+    return first
+
+
+def _empty_finding(script: Script, node: ast.Attribute, path: str, file: str, severity: Severity) -> Finding:
+    told = f"`{path}` is None in {file} file, and nothing in this script fills it: `{_EMPTY[path].filled_by}` does."
+    return Finding(RULE.id, severity, script.name_span(node), told, path)
 
 
 def _looked_up(script: Script) -> Iterator[Finding]:
@@ -161,4 +187,4 @@ def _is_named(script: Script, name: str) -> bool:
     return any(name in text for text in texts_but_keys(script))
 
 
-RULE = Rule("empty-file", "warning", "Something read from what an empty file lacks", _check)
+RULE = Rule("empty-file", "warning", "Something read from what an empty or a new file lacks", _check)

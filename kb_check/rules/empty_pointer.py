@@ -44,12 +44,12 @@ from kb_check.made_here import (
     knows_all,
     member_path,
     named_words,
-    read_pointer,
     stage,
     stored_names,
 )
 from kb_check.not_ensured import ensuring, not_ensured
 from kb_check.other_modes import set_otherwise
+from kb_check.read_pointers import read_pointer
 from kb_check.rule import Rule
 from kb_check.script import once_for_each, once_per_script
 from kb_check.tried import is_tried

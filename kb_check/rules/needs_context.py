@@ -1,10 +1,13 @@
-"""An operator that runs only in an area of a window, in a script that gives it none.
+"""An operator that runs only in an area of a window, or something read from an area, in a script that gives it none.
 
 Run with ``--background``, from a terminal or by an agent, a script has no area: the operator's poll fails, a
-RuntimeError. The same script may run from Blender's text editor.
+RuntimeError, and ``context.area`` is None. The same script may run from Blender's text editor.
 
 ```python
 bpy.ops.view3d.view_selected()  # reported
+bpy.context.space_data.shading.type = (
+    "SOLID"  # reported: bpy.context.screen.areas has the areas that a file shows
+)
 with bpy.context.temp_override(window=window, area=area, region=region):
     bpy.ops.view3d.view_selected()
 ```
@@ -19,26 +22,37 @@ area and in none (``kb_build/blender/inside/operator_areas.py``).
 
 from __future__ import annotations
 
+import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Builtin, Mapping, Operator
+from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import operator_areas, operator_given
 from kb_build.symbols.lines import area_text
 from kb_check.background import is_called_by_others, lines_of_others
 from kb_check.calls import calls
 from kb_check.findings import Finding
+from kb_check.made_here import alias, asked_names
+from kb_check.read_pointers import read_from
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.symbols.records import Symbol
+    from kb_check.read_pointers import PointerRead
     from kb_check.script import Script
+
+
+# What the context has in an area alone.
+_OF_AREAS = {f"{T}Context.{name}": name for name in ("area", "region", "region_data", "space_data")}
+_AREAS = "the areas that a file shows are in `bpy.context.screen.areas`"
 
 
 def _check(script: Script) -> Iterator[Finding]:
     found = [call for call in calls(script) if _wants(call.callee.symbol)]
-    if not found or is_called_by_others(script):
+    read = [one for one in read_from(script, _OF_AREAS) if _is_starting(script, one)]
+    if not (found or read) or is_called_by_others(script):
         return
     asked = set(_asked(script))
     given = lines_of_others(script)
@@ -52,6 +66,16 @@ def _check(script: Script) -> Iterator[Finding]:
             RULE.id, "note", script.span(call.node), f"`{path}` {_advice(call.callee.symbol)}", path,
             ("bpy.types.Context.temp_override",),
         )  # fmt: skip
+    for one in read:
+        if one.node.lineno not in given:
+            told = f"`{one.path}` is None in a Blender without a window (`--background`): {_AREAS}."
+            yield Finding(RULE.id, "note", script.name_span(one.node), told, one.path, (f"{T}Screen.areas",))
+
+
+def _is_starting(script: Script, read: PointerRead) -> bool:
+    """Whether it is read of the context that Blender starts with, none that is handed on, and not asked for."""
+    is_own = ast.unparse(alias(script, read.pointer.value)) == "bpy.context"
+    return is_own and _OF_AREAS[read.path] not in asked_names(script)
 
 
 def _wants(operator: Symbol) -> bool:
@@ -78,4 +102,4 @@ def _asked(script: Script) -> Iterator[str]:
             yield kind.receiver.path
 
 
-RULE = Rule("needs-context", "note", "An operator that runs only in an area of a window", _check)
+RULE = Rule("needs-context", "note", "What runs or is there only in an area of a window", _check)

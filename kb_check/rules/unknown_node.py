@@ -180,7 +180,9 @@ def _words_of(name: str) -> frozenset[str]:
 
 def _alike_finding(script: Script, node: ast.Constant, alike: list[Symbol]) -> Finding:
     names = [last_name(symbol.path) for symbol in alike]
-    told = f"No node is called {node.value!r}: `nodes.new` takes {' or '.join(f'`{name}`' for name in names)}."
+    told = (
+        f"No node is called {node.value!r}: `nodes.new` takes {' or '.join(f'`{name}`' for name in names)}."
+    )
     edit = script.renamed(node, names[0]) if len(names) == 1 else None
     fix = Fix(f"Write {names[0]}", (edit,)) if edit else None
     paths = tuple(symbol.path for symbol in alike)

@@ -32,6 +32,7 @@ bpy.data.worlds['World'].color
 bpy.data.collections['Collection'].name
 bpy.context.scene.compositing_node_group.nodes
 bpy.data.scenes[0].compositing_node_group.interface
+bpy.context.scene.rigidbody_world.time_scale = 2
 bpy.context.scene.render.fps = 25
 bpy.context.scene.collection.name
 bpy.context.view_layer.name
@@ -51,7 +52,34 @@ def test_what_blender_refuses_in_an_empty_file_is_found(rule_checker: Checker, t
     refused = [line for line, (error, *_) in zip(_READING, answers, strict=True) if error]
     found = [line for line in _READING if is_found(rule_checker, f"{_EMPTYING}{line}\n")]
     assert found == refused
-    assert len(refused) == 18
+    assert len(refused) == 19
+
+
+def test_what_a_new_file_lacks_is_noted_where_none_is_emptied(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = [line for line in _READING if "bpy.data" not in line or "scenes[0]" in line]
+    answers = run_statements(tmp_path, ["import bpy", *lines])[1:]
+    refused = [line for line, (error, *_) in zip(lines, answers, strict=True) if error]
+    found = {
+        line: rule_checker.check(f"import bpy\n{line}\nprint()\n", rules=["empty-file"]) for line in lines
+    }
+    assert [line for line in lines if found[line]] == refused
+    assert {finding.severity for findings in found.values() for finding in findings} == {"note"}
+    assert len(refused) == 3
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "def register():\n    pass\nbpy.context.scene.rigidbody_world.time_scale = 2",
+        "class A:\n    bpy.context.scene.rigidbody_world.time_scale = 2\nprint(A)",
+        "bpy.ops.rigidbody.object_add()\nbpy.context.scene.rigidbody_world.time_scale = 2",
+        "bpy.ops.wm.open_mainfile(filepath='a.blend')\nbpy.context.scene.compositing_node_group.nodes",
+        "if bpy.context.scene.rigidbody_world:\n    bpy.context.scene.rigidbody_world.time_scale = 2\nprint()",
+        "try:\n    bpy.context.scene.rigidbody_world.time_scale = 2\nexcept AttributeError:\n    pass\nprint()",
+    ],
+)
+def test_what_may_be_another_file_is_no_finding(rule_checker: Checker, text: str) -> None:
+    assert not is_found(rule_checker, f"import bpy\n{text}\n")
 
 
 @pytest.mark.parametrize(

@@ -66,9 +66,7 @@ def test_a_label_is_reported_and_mended(rule_checker: Checker, check: Check, tmp
     assert [error for error, *_ in run_statements(tmp_path, mended) if error] == []
 
 
-def test_a_name_of_the_same_words_is_reported(
-    rule_checker: Checker, check: Check, tmp_path: Path
-) -> None:
+def test_a_name_of_the_same_words_is_reported(rule_checker: Checker, check: Check, tmp_path: Path) -> None:
     api = rule_checker.api
     nodes = [symbol for cls in api.descendants("bpy.types.Node") if (symbol := api.symbols.symbol(cls))]
     lines = [

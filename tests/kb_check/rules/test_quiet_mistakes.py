@@ -203,6 +203,12 @@ HEADLESS = [
     "bpy.ops.mesh.primitive_cube_add()",
     "bpy.ops.console.clear()",
     "bpy.ops.screen.screen_full_area()",
+    "bpy.context.area.tag_redraw()",
+    "bpy.context.region.width",
+    "bpy.context.space_data.shading.type = 'SOLID'",
+    "bpy.context.region_data.view_distance",
+    "bpy.context.window.screen.areas",
+    "bpy.context.screen.areas[0].tag_redraw()",
 ]
 
 
@@ -210,8 +216,8 @@ def test_contexts_are_those_that_a_blender_without_window_lacks(
     rule_checker: Checker, tmp_path: Path
 ) -> None:
     answers = run_statements(tmp_path, ["import bpy", *HEADLESS])[1:]
-    refused = [line for line, (error, *_) in zip(HEADLESS, answers, strict=True) if ".poll()" in error]
-    assert len(refused) > 3
+    refused = [line for line, (error, *_) in zip(HEADLESS, answers, strict=True) if error]
+    assert len(refused) > 7
     found = rule_checker.check("\n".join(["import bpy", *HEADLESS]), rules=["needs-context"])
     assert [HEADLESS[finding.span.line - 2] for finding in found] == refused
 
@@ -225,6 +231,9 @@ def test_contexts_are_those_that_a_blender_without_window_lacks(
         "def register():\n    bpy.ops.view3d.view_selected()",
         "class A(bpy.types.Operator):\n    def execute(self, _):\n        bpy.ops.view3d.view_all()\nprint(A)",
         "def show():\n    bpy.ops.view3d.view_selected()",
+        "def show():\n    bpy.ops.view3d.view_selected()\n\ndef draw():\n    show()\n\nprint(draw)",
+        "if bpy.context.area:\n    bpy.context.area.tag_redraw()",
+        "def show(context):\n    context.area.tag_redraw()\n\nshow(bpy.context)",
     ],
 )
 def test_given_contexts_are_no_finding(check: Check, code: str) -> None:
