@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES
 from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, Type, members
 from kb_build.symbols.api_names import ID
+from kb_build.symbols.records import SCALAR_TYPES
 from kb_build.symbols.unlisted import SOMETIMES
 from kb_check.calls import calls
 from kb_check.conversions import CHANGING_ARRAYS
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
 _PART = re.compile(r'(?P<dot>\.?)(?P<name>[A-Za-z_]\w*)|\["(?P<key>(?:[^"\\]|\\.)*)"\]|\[\d+\]')
 _MISQUOTED = re.compile(r"\['[^'\"]*'\]")
 _ITEM = re.compile(r"\.([a-z])|\[(\d+)\]")
-_SCALARS = frozenset({"boolean", "int", "float", "string", "enum"})
 _UNBOUND = 32  # the length that RNA gives to arrays which have any
 # The letters of the items of arrays, by what these are. Blender takes those of a vector for all others.
 _LETTERS = {"COLOR": "rgba", "COLOR_GAMMA": "rgba", "QUATERNION": "wxyz", "AXISANGLE": "wxyz"}
@@ -56,7 +56,7 @@ def follow(script: Script, owner: ast.expr, path: str) -> Followed:
     properties: tuple[Symbol, ...] = ()
     place = crossing = 0
     while place < len(path):
-        if properties and all(symbol.type in _SCALARS for symbol in properties):
+        if properties and all(symbol.type in SCALAR_TYPES for symbol in properties):
             return Followed(properties, path[place:], crossing)
         if place and not crossing and kinds and all(_is_data_block(script, kind) for kind in kinds):
             crossing = place

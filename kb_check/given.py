@@ -11,6 +11,7 @@ from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, members
 from kb_build.symbols.api_names import STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import plain_path
+from kb_build.symbols.records import SCALAR_TYPES
 from kb_check.calls import calls_not_ready_for
 from kb_check.own_classes import own_classes
 from kb_check.raised import REFUSES
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _SIZES = re.compile(r"\[(\d+)\]")
-_SCALARS = frozenset({"boolean", "int", "float", "string", "enum"})
 _MISDOCUMENTED = frozenset({"bpy.utils.resource_path(minor)"})  # an int, which references call a str
 _FIXED = frozenset({2, 3, 4})  # other sizes of a parameter are the most, or the least, that it takes
 _ANY = "AnyType"
@@ -196,7 +196,7 @@ def property_taker(symbol: Symbol) -> Taker:
         kind = "set"
     elif kind == "pointer":
         target = f"{T}{symbol.target}"
-    elif kind not in _SCALARS:
+    elif kind not in SCALAR_TYPES:
         return Taker(symbol.path, "", symbol)
     return Taker(
         symbol.path, kind, symbol, target, symbol.array, "", symbol.subtype, symbol.unit,
@@ -220,7 +220,7 @@ def parameter_taker(script: Script, symbol: Symbol, parameter: Parameter, *, is_
         kind, sizes = "set", ()
     elif kind == "enum" and not isinstance(parameter.default, str):
         kind = "enum or set"  # what is required has no default to tell
-    elif kind not in _SCALARS:
+    elif kind not in SCALAR_TYPES:
         # What takes anything of RNA's is declared as a class that nothing is derived from.
         target = STRUCT if parameter.type == _ANY else f"{T}{parameter.type}"
         known = not is_operator and script.api.is_class(target)

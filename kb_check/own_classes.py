@@ -115,6 +115,18 @@ def own_classes(script: Script) -> list[OwnClass]:
     return found
 
 
+@once_per_script
+def plain_classes(script: Script) -> frozenset[str]:
+    """The names of the script's classes that derive from nothing but each other, and are bound once."""
+    names = _class_names(script, script.all(ast.ClassDef))
+    plain: set[str] = set()
+    for name, node in names.items():  # in the order in which they stand, as they are made
+        bases = {base.id if isinstance(base, ast.Name) else "" for base in node.bases}
+        if bases <= {"object", *plain} and not node.decorator_list and not node.keywords:
+            plain.add(name)
+    return frozenset(plain)
+
+
 class _Family:
     """A class and what it derives from. ``bodies`` begin with the last one in which Python looks."""
 

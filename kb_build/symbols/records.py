@@ -29,6 +29,9 @@ PAGE_SOURCES: tuple[PageSource, ...] = get_args(PageSource)
 LinkKind = Literal["manual", "base", "pointer", "collection", "socket-of"]
 
 
+# The types of properties in Blender's own data: those of values, and all. What Python computes has others.
+SCALAR_TYPES = frozenset({"boolean", "int", "float", "string", "enum"})
+RNA_TYPES = SCALAR_TYPES | {"pointer", "collection"}
 # How the types of parameters end that are texts for which None can be given, too.
 OR_NONE = " or None"
 # How flags begin that say what fills a pointer that is None on a new thing, and on which new things it is not None.

@@ -40,7 +40,8 @@ from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.literals import number
 from kb_check.made_here import OBJECTS_NEW, bindings, callee_path, makers
 from kb_check.node_trees import tree_of
-from kb_check.own_classes import own_classes
+from kb_check.own_classes import own_classes, plain_classes
+from kb_check.registrations import registrations
 from kb_check.removed import OUTSIDE_MAIN
 from kb_check.repeated_calls import follows
 from kb_check.rule import Rule
@@ -69,6 +70,7 @@ def _check(script: Script) -> Iterator[Finding]:
     yield from _called_properties(script)
     yield from _called_classes(script)
     yield from _called_structs(script)
+    yield from _plain_registered(script)
     unknown = {row.node for row in script.missing("keyword")}
     earlier: dict[tuple[str, str, str], CallSite] = {}
     for call in calls(script):
@@ -148,6 +150,15 @@ def _called_structs(script: Script) -> Iterator[Finding]:
             f"`{ast.unparse(node.func)}` cannot be called: Blender makes the instances of a `{path}`.{advice}",
             path, (), _uncalled(script, node, "Give the class") if is_registered else None,
         )  # fmt: skip
+
+
+def _plain_registered(script: Script) -> Iterator[Finding]:
+    """Classes that are registered, and derive from none of Blender's."""
+    for name in sorted(plain_classes(script) & registrations(script).keys()):
+        for one in registrations(script)[name]:
+            if not is_tried(script, one.node):
+                told = f"`{name}` derives from no class of Blender's, as an Operator does: it cannot be registered."
+                yield Finding(RULE.id, "error", script.span(one.node), told, "bpy.utils.register_class")
 
 
 def _struct_called(script: Script, node: ast.expr) -> str:

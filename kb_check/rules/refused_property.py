@@ -10,6 +10,7 @@ bpy.props.EnumProperty(items=[("A", "First", "")], default="B")  # reported: non
 bpy.props.FloatVectorProperty(size=4, default=(1, 1, 1))  # reported: 3 values for 4
 bpy.props.IntProperty(update=lambda self: None)  # reported: it gets (self, context)
 bpy.props.PointerProperty(type=bpy.types.Node)  # reported: neither a data-block nor a group of properties
+bpy.types.Object.color = bpy.props.FloatProperty()  # reported: objects have one of that name
 ```
 
 A default beyond the property's own range is a warning: Blender keeps it until somebody sets the property.
@@ -25,13 +26,16 @@ from typing import TYPE_CHECKING
 from kb_build.flow.types import ClassObject
 from kb_build.symbols.api_names import ID
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.records import RNA_TYPES
 from kb_check.calls import calls
 from kb_check.findings import Finding, Fix
 from kb_check.literals import functions, number, set_of, times_bound, written
+from kb_check.made_here import callee_path
+from kb_check.own_classes import plain_classes
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from kb_check.findings import Severity
     from kb_check.script import Script
@@ -81,6 +85,25 @@ def _check(script: Script) -> Iterator[Finding]:
                 yield from one.vector()
             case _:
                 pass
+    for node in script.all(ast.Assign):
+        if isinstance(node.value, ast.Call) and callee_path(script, node.value).startswith(_PROPS):
+            yield from _taken_names(script, node.targets)
+
+
+def _taken_names(script: Script, targets: Sequence[ast.expr]) -> Iterator[Finding]:
+    """Properties that a class of data-blocks has itself; what it inherits, and what Python gives it, may be covered."""
+    for target in targets:
+        kind = script.type_of(target.value) if isinstance(target, ast.Attribute) else None
+        if not isinstance(target, ast.Attribute) or not isinstance(kind, ClassObject):
+            continue
+        if not script.api.descends(kind.cls, ID):
+            continue
+        symbol = script.api.symbols.symbol(f"{kind.cls}.{target.attr}")
+        if symbol and symbol.type in RNA_TYPES and "runtime" not in symbol.flags:
+            told = (
+                f"`{symbol.path}` is Blender's own: it refuses another property of that name. Choose another."
+            )
+            yield Finding(RULE.id, "error", script.name_span(target), told, symbol.path)
 
 
 class _Declaration:
@@ -113,6 +136,8 @@ class _Declaration:
         for name, wants in _CALLED_WITH.items():
             node = self._given.get(name)
             arguments = self._arguments(node)
+            if isinstance(node, ast.Constant) and node.value is not None:
+                yield self._finding(node, name, f"takes a function, not {node.value!r}")
             if node is None or arguments is None:
                 continue
             count = len(arguments.posonlyargs) + len(arguments.args)
@@ -169,6 +194,8 @@ class _Declaration:
             what = repr(node.value) if node.value is not None else ""
         elif isinstance(node, ast.Name) and node.id in _BUILTIN and not isinstance(kind, ClassObject):
             what = "" if times_bound(self._script)[node.id] else f"`{node.id}`"
+        elif isinstance(node, ast.Name) and node.id in plain_classes(self._script):
+            what = f"`{node.id}`, which derives from none"
         elif isinstance(kind, ClassObject) and not any(api.descends(kind.cls, base) for base in bases):
             what = f"`{kind.cls}`"
         if what:

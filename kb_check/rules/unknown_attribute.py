@@ -31,6 +31,7 @@ from kb_build.flow.types import UNKNOWN, Plain, members
 from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.object_data import OBJECT_DATA
+from kb_build.symbols.records import SCALAR_TYPES
 from kb_check.annotated_parameters import ONE_IS_WRONG, is_annotated
 from kb_check.calls import nothing_from, other_way
 from kb_check.findings import Finding, Fix
@@ -59,7 +60,6 @@ _LET_PASS = frozenset({"driver_remove"})
 _OF_SCRIPTS, _REFUSED = "bpy.types.PropertyGroup", (5, 0)
 _PYTHONS: dict[str, type] = {"bool": bool, "int": int, "float": float, "str": str}
 _VALUE = "default_value"
-_SCALARS = frozenset({"boolean", "int", "float", "string", "enum"})
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -201,7 +201,7 @@ def _of_python(script: Script) -> Iterator[Finding]:
 def _scalar(script: Script, path: str, node: ast.Attribute) -> str:
     """The one type of Python's that a property surely is of which lacks an attribute; empty for none."""
     symbol = script.api.symbols.symbol(path) if path else None
-    if symbol is None or symbol.kind != "property" or symbol.type not in _SCALARS or symbol.array:
+    if symbol is None or symbol.kind != "property" or symbol.type not in SCALAR_TYPES or symbol.array:
         return ""
     kinds = {
         kind.kind if isinstance(kind, Plain) else ""

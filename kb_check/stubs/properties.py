@@ -12,6 +12,7 @@ from kb_build.flow.api import ARRAY
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES
 from kb_build.flow.types import Instance, Sequence
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.records import RNA_TYPES
 from kb_check.stubs.annotations import ANY, ITEMS, MAYBE_NONE
 from kb_check.stubs.families import OBJECT_DATA_FAMILY
 from kb_check.stubs.names import docstring
@@ -69,7 +70,7 @@ class Properties:
         """What a property gives, and what it takes."""
         if symbol.path == f"{T}Object.data":
             return f"{OBJECT_DATA_FAMILY} | {ANY}", f"{T}ID | None"
-        if symbol.type not in {"boolean", "int", "float", "string", "enum", "pointer", "collection"}:
+        if symbol.type not in RNA_TYPES:
             return self._spelled(symbol, kind)
         given = self._annotations.value(kind, symbol)
         if isinstance(kind, Instance) and symbol.type == "pointer":

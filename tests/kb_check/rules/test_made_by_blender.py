@@ -38,6 +38,8 @@ _LINES = [
     "ob = bpy.types.Object('Name')",
     "ob = bpy.types.Object(bpy.data.objects[0])",
     "plain = Plain()",
+    "bpy.utils.register_class(Plain)",
+    "for cls in (Plain,): bpy.utils.register_class(cls)",
     "made = Made()",
     "bpy.utils.unregister_class(Grow)",
 ]

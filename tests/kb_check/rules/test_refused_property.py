@@ -12,6 +12,8 @@ if TYPE_CHECKING:
 
     from conftest import Check
 
+    from kb_check.checker import Checker
+
 _START = """\
 import bpy
 from bpy.props import *
@@ -20,6 +22,8 @@ def one(self): pass
 def two(self, context): pass
 def three(self, context, text): return []
 def items(self, context): return []
+class Plain: pass
+class Plainer(Plain): pass
 """
 _CALLS = """\
 IntProperty(default=1)
@@ -35,6 +39,7 @@ IntProperty("name")
 IntProperty(update=one)
 IntProperty(update=two)
 IntProperty(update=None)
+IntProperty(update="two")
 IntProperty(update=lambda self: None)
 IntProperty(update=lambda self, context: None)
 IntProperty(update=lambda self, context, key=1: None)
@@ -137,6 +142,8 @@ BoolVectorProperty(size=2, default=(True, False))
 BoolVectorProperty(size=3, default=(True, False))
 IntVectorProperty(size=2, default=(1, 2))
 IntVectorProperty(min=0.5)
+PointerProperty(type=Plain)
+CollectionProperty(type=Plainer)
 """
 # What is a warning: Blender takes it.
 _TAKEN = 3
@@ -151,6 +158,29 @@ def test_what_is_refused_is_reported_and_nothing_else(check: Check, tmp_path: Pa
     errors = {calls[finding.span.line - first] for finding in found if finding.severity == "error"}
     assert errors == refused
     assert sum(finding.severity == "warning" for finding in found) == _TAKEN
+
+
+def test_names_that_a_class_has_itself_are_refused(
+    rule_checker: Checker, check: Check, tmp_path: Path
+) -> None:
+    api = rule_checker.api
+    names = {
+        cls: [*api.own(cls)]
+        for cls in (
+            "bpy.types.Object",
+            "bpy.types.Scene",
+            "bpy.types.Mesh",
+            "bpy.types.ID",
+            "bpy.types.Modifier",
+        )
+    }
+    lines = ["import bpy"]
+    lines += [f"{cls}.{name} = bpy.props.IntProperty()" for cls, own in names.items() for name in own]
+    lines += ["bpy.types.Mesh.tag = bpy.props.IntProperty()", "bpy.types.Mesh.mine = bpy.props.IntProperty()"]
+    answers = run_statements(tmp_path, lines)
+    refused = [line for line, (error, *_) in zip(lines, answers, strict=True) if error]
+    assert [lines[one.span.line - 1] for one in check("refused-property", "\n".join(lines))] == refused
+    assert len(refused) > 100
 
 
 @pytest.mark.parametrize("kind", ["int", "str"])
