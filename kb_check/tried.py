@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 
-def is_tried(script: Script, node: ast.expr, errors: tuple[str, ...] = ()) -> bool:
+def is_tried(script: Script, node: ast.expr | ast.stmt, errors: tuple[str, ...] = ()) -> bool:
     """Whether an error here may be caught: in a ``try``, or by a context manager that is none of Blender's.
 
     ``errors`` are the names of the classes that it may be of; of any where none is named.

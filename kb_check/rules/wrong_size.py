@@ -1,0 +1,169 @@
+"""Vectors and matrices whose sizes do not fit, or that lack what is read from them.
+
+```python
+rotation.to_matrix() @ Matrix.Translation(offset)  # reported: 3 × 3 and 4 × 4
+rotation.to_matrix().to_4x4() @ Matrix.Translation(offset)
+uv.co - vertex.co  # reported: 2 and 3 components
+Vector((1, 2, 3)).w  # reported
+x, y = ob.location  # reported: 3 components
+Matrix.Identity(5)  # reported: 2 to 4
+```
+
+Not reported: sizes that are not written in the script or told by the API, scripts that resize any, and what stands in a
+``try``.
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_check.findings import Edit, Finding, Fix
+from kb_check.literals import number
+from kb_check.made_here import callee_path
+from kb_check.mathutils_sizes import MATRIX, QUATERNION, SIZED, VECTOR, are_refused, class_of, size_of
+from kb_check.rule import Rule
+from kb_check.tried import is_tried
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_check.mathutils_sizes import Size
+    from kb_check.script import Script
+
+_SIGNS: dict[type[ast.operator], str] = {ast.MatMult: "@", ast.Add: "+", ast.Sub: "-", ast.Mult: "*"}
+_AXES = "xyzw"
+_SPACE = 3  # components of what is in space
+_ROTATION, _WHOLE = (3, 3), (4, 4)
+_SIZES = range(2, 5)
+# Methods of matrices, and the sizes that they work on.
+_WANT = {
+    "mathutils.Matrix.decompose": {_WHOLE}, "mathutils.Matrix.to_translation": {_WHOLE},
+    "mathutils.Matrix.to_euler": {_ROTATION, _WHOLE}, "mathutils.Matrix.to_quaternion": {_ROTATION, _WHOLE},
+}  # fmt: skip
+# Methods of vectors that want another of the same size.
+_ALIKE = frozenset(f"{VECTOR}.{name}" for name in ("angle", "cross", "dot", "project"))
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    for node in script.all(ast.BinOp, ast.AugAssign, ast.Attribute, ast.Call, ast.Assign, ast.Subscript):
+        match node:
+            case ast.BinOp(left=left, right=right) | ast.AugAssign(target=left, value=right):
+                told = _operation(script, node, left, right)
+            case ast.Attribute():
+                told = _member(script, node)
+            case ast.Call():
+                told = _call(script, node)
+            case ast.Subscript():
+                told = _item(script, node)
+            case ast.Assign(targets=[ast.Tuple(elts=names) | ast.List(elts=names)]):
+                told = _unpacked(script, node.value, names)
+            case _:
+                continue
+        if told and not is_tried(script, node):
+            yield told
+
+
+def _operation(
+    script: Script, node: ast.BinOp | ast.AugAssign, left: ast.expr, right: ast.expr
+) -> Finding | None:
+    sign = _SIGNS.get(type(node.op), "")
+    first, second = size_of(script, left), size_of(script, right)
+    if sign and first and second and are_refused(sign, first, second):
+        told = f"`{sign}` is refused: {_words(first)} does not fit {_words(second)}.{_advice(first, second)}"
+        return _finding(script, node, told, fix=_widened(script, left, first, right, second))
+    is_turned = sign == "@" and class_of(script, left) == QUATERNION and len(second) == 1
+    if is_turned and second != (_SPACE,):
+        told = f"A quaternion turns vectors of {_SPACE} components, and this one has {second[0]}."
+        return _finding(script, node, told)
+    return None
+
+
+def _advice(first: Size, second: Size) -> str:
+    match first, second:
+        case (_, _), (_, _):
+            return " `.to_4x4()` and `.to_3x3()` make one of the other."
+        case (_,), (_,):
+            return " `.to_3d()` and `.to_2d()` make one of the other."
+        case _:
+            return ""
+
+
+def _widened(script: Script, left: ast.expr, first: Size, right: ast.expr, second: Size) -> Fix | None:
+    """The fix that makes a transformation of a rotation, where the other one is one."""
+    if sorted((first, second)) != [_ROTATION, _WHOLE]:
+        return None
+    small = left if first == _ROTATION else right
+    if not isinstance(small, (ast.Name, ast.Attribute, ast.Call)):
+        return None
+    span = script.span(small)
+    return Fix("Write .to_4x4()", (Edit(span, f"{script.text(span)}.to_4x4()"),))
+
+
+def _member(script: Script, node: ast.Attribute) -> Finding | None:
+    size = size_of(script, node.value)
+    if len(size) == 1 and set(node.attr) <= set(_AXES):
+        lacking = [axis for axis in node.attr if _AXES.index(axis) >= size[0]]
+        if lacking:
+            return _finding(script, node, f"A vector of {size[0]} components has no `{lacking[0]}`.")
+    if len(size) == 2 and node.attr == "translation" and size != _WHOLE:
+        return _finding(
+            script, node, f"{_words(size).capitalize()} has no translation: one of 4 × 4 has.", MATRIX
+        )
+    return None
+
+
+def _call(script: Script, call: ast.Call) -> Finding | None:
+    path = callee_path(script, call)
+    if path in SIZED and len(call.args) > SIZED[path]:
+        return _made(script, call.args[SIZED[path]], path)
+    if not isinstance(call.func, ast.Attribute) or path not in _ALIKE | _WANT.keys():
+        return None
+    size = size_of(script, call.func.value)
+    if path in _WANT and size and size not in _WANT[path]:
+        wanted = " or ".join(map(_count, sorted(_WANT[path])))
+        return _finding(script, call, f"`{path}` wants a matrix of {wanted}, not of {_count(size)}.", path)
+    other = size_of(script, call.args[0]) if path in _ALIKE and len(call.args) == 1 else ()
+    if size and other and (other < size or (path.endswith("cross") and other != size)):
+        return _finding(
+            script, call, f"`{path}` wants {size[0]} components, and this vector has {other[0]}.", path
+        )
+    return None
+
+
+def _made(script: Script, node: ast.expr, path: str) -> Finding | None:
+    count = number(script, node)
+    if not isinstance(count, int) or count in _SIZES:
+        return None
+    return _finding(script, node, f"`{path}` makes matrices of 2 to 4 rows, not {count}.", path)
+
+
+def _item(script: Script, node: ast.Subscript) -> Finding | None:
+    size, place = size_of(script, node.value), number(script, node.slice)
+    if not size or not isinstance(place, int) or -size[0] <= place < size[0]:
+        return None
+    return _finding(script, node, f"{_words(size).capitalize()} has no item {place}.")
+
+
+def _unpacked(script: Script, value: ast.expr, names: list[ast.expr]) -> Finding | None:
+    size = size_of(script, value)
+    if not size or len(names) == size[0] or any(isinstance(name, ast.Starred) for name in names):
+        return None
+    return _finding(script, value, f"{_words(size).capitalize()} cannot be unpacked into {len(names)} names.")
+
+
+def _words(size: Size) -> str:
+    return f"a vector of {size[0]} components" if len(size) == 1 else f"a matrix of {_count(size)}"
+
+
+def _count(size: Size) -> str:
+    return " × ".join(map(str, size))
+
+
+def _finding(
+    script: Script, node: ast.expr | ast.stmt, told: str, path: str = "", fix: Fix | None = None
+) -> Finding:
+    return Finding(RULE.id, "error", script.span(node), told, path or VECTOR, (), fix)
+
+
+RULE = Rule("wrong-size", "error", "Vectors and matrices whose sizes do not fit", _check)
