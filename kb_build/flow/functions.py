@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.core import DEEPEST_RUN
 from kb_build.flow.parameters import Parameters
 from kb_build.flow.scopes import Scope, State, kept
+from kb_build.flow.shared_names import NONE_SHARED
 from kb_build.flow.texts import for_one_call, has_passed, has_texts, texts_in, without_texts
 from kb_build.flow.trees import default_values
 from kb_build.flow.trials import Trials
@@ -54,7 +55,7 @@ class Functions(Parameters, Trials):
 
     def _place_of(self, function: FunctionDefinition) -> Place:
         file = function.file or self.here.file
-        shared = file.shared_names.get(function.node, frozenset())
+        shared = file.shared_names.get(function.node, NONE_SHARED)
         scope = Scope(function.scope, state=State(doubted=function.doubted), shared=shared)
         return self.here.further(file, scope, function)
 

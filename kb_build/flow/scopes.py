@@ -7,8 +7,21 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from kb_build.flow.doubts import NO_DOUBTS, Doubts
-from kb_build.flow.type_parts import bounded, unsure
-from kb_build.flow.types import Builtin, Function, Instance, LocalFunction, Mapping, Tuple, Type, Union, join
+from kb_build.flow.shared_names import NONE_SHARED, SharedNames
+from kb_build.flow.type_parts import HOLDING, bounded, unsure
+from kb_build.flow.types import (
+    UNKNOWN,
+    Builtin,
+    Function,
+    Instance,
+    LocalFunction,
+    Mapping,
+    Tuple,
+    Type,
+    Union,
+    join,
+    members,
+)
 from kb_build.flow.types import Sequence as ListType
 
 if TYPE_CHECKING:
@@ -77,7 +90,7 @@ class Scope:
     """A module, a function or a class. ``ever`` joins all that a name was bound to: what other scopes see.
 
     ``asked`` are the names that hold what ``hasattr`` or ``getattr`` said, with the expression. ``shared`` are names
-    that functions bind or fill which are not theirs: what one holds depends on what was called before.
+    that functions bind or fill which are not theirs.
     """
 
     parent: Scope | None = None
@@ -87,12 +100,12 @@ class Scope:
     ever: dict[str, Type] = field(default_factory=dict[str, Type])
     elsewhere: set[str] = field(default_factory=set[str])
     asked: dict[str, ast.expr] = field(default_factory=dict[str, ast.expr])
-    shared: frozenset[str] = frozenset()
+    shared: SharedNames = NONE_SHARED
     changes: int = 0
 
     def lookup(self, name: str) -> Type | None:
         """What a name holds here; None for a name that the script does not bind."""
-        if name in self.shared:
+        if name in self.shared.bound or (name in self.shared.filled and self._may_be_filled(name)):
             return self._shared(name)
         if name not in self.elsewhere:
             found = self.state.names.get(name)
@@ -109,10 +122,19 @@ class Scope:
 
     def _shared(self, name: str) -> Type | None:
         """All that a shared name ever held, none of it for sure."""
+        held = self._held(name)
+        return unsure(held) if held is not None else None
+
+    def _may_be_filled(self, name: str) -> bool:
+        """Whether a name ever held a list or a dictionary, which is of another type once it is filled."""
+        return any(isinstance(one, HOLDING) for one in members(self._held(name) or UNKNOWN))
+
+    def _held(self, name: str) -> Type | None:
+        """All that a name ever held, here or around; None for one that the script does not bind."""
         scope: Scope | None = self
         while scope is not None:
             if name in scope.ever and (scope is self or not scope.is_class):
-                return unsure(scope.ever[name])
+                return scope.ever[name]
             scope = scope.parent
         return None
 

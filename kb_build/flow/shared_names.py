@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.trees import called_name, children
 
@@ -16,28 +16,40 @@ _GLOBALS = "globals"
 _ANY = "*"
 
 
+class SharedNames(NamedTuple):
+    """The names of a module or a function that functions bind or fill though they are not their own: what one holds
+    depends on which functions were called before. Those that are ``filled`` and not bound hold another thing only if it
+    is a list or a dictionary.
+    """
+
+    bound: frozenset[str] = frozenset()
+    filled: frozenset[str] = frozenset()
+
+
+NONE_SHARED = SharedNames()
+
+
 @dataclass(slots=True)
 class _Part:
     """A module or a function. ``own`` are the names that it binds, ``outer`` those that it binds or fills in parts
-    around it, ``in_module`` those that it says are the module's, ``filled`` those whose items it sets or adds to,
-    ``written`` those that it puts into ``globals()``, ``_ANY`` for computed ones.
+    around it, ``bound`` those that it binds in a function around it, ``in_module`` those that it says are the module's,
+    ``filled`` those whose items it sets or adds to, ``written`` those that it puts into ``globals()``, ``_ANY`` for
+    computed ones.
     """
 
     node: ast.AST
     around: _Part | None
     own: set[str] = field(default_factory=set[str])
     outer: set[str] = field(default_factory=set[str])
+    bound: set[str] = field(default_factory=set[str])
     in_module: set[str] = field(default_factory=set[str])
     filled: set[str] = field(default_factory=set[str])
     written: set[str] = field(default_factory=set[str])
     shared: set[str] = field(default_factory=set[str])
 
 
-def shared_names(tree: ast.Module) -> Mapping[ast.AST, frozenset[str]]:
-    """Module, function or lambda → the names there that functions bind or fill though they are not their own.
-
-    What such a name holds depends on which functions were called before.
-    """
+def shared_names(tree: ast.Module) -> Mapping[ast.AST, SharedNames]:
+    """Module, function or lambda → the names there that functions share."""
     module = _Part(tree, None)
     parts = [module]
     for part in parts:  # it grows
@@ -53,13 +65,17 @@ def shared_names(tree: ast.Module) -> Mapping[ast.AST, frozenset[str]]:
     for part in parts:
         if part.around is not None:
             part.shared |= part.in_module | (part.around.shared - part.own)
-    return {part.node: frozenset(part.shared) for part in parts}
+    bound = set[str]().union(*(part.bound | part.in_module | part.written for part in parts))
+    bound |= module.own if _ANY in bound else set()
+    return {
+        part.node: SharedNames(frozenset(part.shared & bound), frozenset(part.shared - bound))
+        for part in parts
+    }
 
 
 def _read(part: _Part) -> list[_Part]:
     """Notes what a part does with names. Returns the functions right within it."""
     inner: list[_Part] = []
-    elsewhere: set[str] = set()
     waiting = children(part.node)
     while waiting:
         node = waiting.pop()
@@ -77,11 +93,11 @@ def _read(part: _Part) -> list[_Part]:
         elif isinstance(node, ast.Global):
             part.in_module.update(node.names)
         elif isinstance(node, ast.Nonlocal):
-            elsewhere.update(node.names)
+            part.bound.update(node.names)
         waiting += children(node)
-    part.own -= elsewhere | part.in_module
+    part.own -= part.bound | part.in_module
     if part.around is not None:
-        part.outer |= elsewhere | (part.filled - part.own - part.in_module)
+        part.outer |= part.bound | (part.filled - part.own - part.in_module)
     return inner
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import DISCRIMINANTS
 from kb_build.flow.scopes import Scope
-from kb_build.flow.shared_names import shared_names
+from kb_build.flow.shared_names import SharedNames, shared_names
 from kb_build.flow.trees import walk
 from kb_build.flow.types import Carried, Readings, Uses
 
@@ -70,8 +70,8 @@ class SourceFile:
         return [*walk(self.tree)] if self.tree else []
 
     @cached_property
-    def shared_names(self) -> Mapping[ast.AST, frozenset[str]]:
-        """Module, function or lambda → the names there that functions bind or fill though they are not their own."""
+    def shared_names(self) -> Mapping[ast.AST, SharedNames]:
+        """Module, function or lambda → the names there that functions share."""
         return shared_names(self.tree) if self.tree else {}
 
     @cached_property

@@ -339,6 +339,25 @@ def test_a_container_that_only_some_calls_tell_leaves_the_rest_sure(api: Api) ->
     assert unknown(api, code) == {("Scene", "no_such_scene")}
 
 
+@pytest.mark.parametrize("filling", ["ob['tag'] = True", "ob.update()", "ob.append(1)"])
+def test_what_is_filled_is_still_a_thing_of_the_api(api: Api, filling: str) -> None:
+    code = f"import bpy\nob = bpy.context.object\ndef main():\n    {filling}\n    ob.no_such_thing\nmain()\n"
+    assert ("Object", "no_such_thing") in unknown(api, code)
+
+
+@pytest.mark.parametrize(
+    "changing",
+    [
+        "def change():\n    global ob\n    ob = numbers()",
+        "def change():\n    globals()['ob'] = numbers()",
+        "ob = [bpy.context.object]\ndef change():\n    ob.append(numbers())",
+    ],
+)
+def test_what_functions_change_is_not_sure(api: Api, changing: str) -> None:
+    code = f"import bpy\nob = bpy.context.object\n{changing}\ndef main():\n    change()\n    ob.no_such_thing\nmain()\n"
+    assert unknown(api, code) == set()
+
+
 def test_conventions_are_not_sure(api: Api) -> None:
     code = "def f(context, ob):\n    context.scene.nothing\n    ob.location.x\n    ob.hide_render"
     rows = resolved(api, code)
