@@ -131,7 +131,7 @@ def _one_version(inputs: _Inputs, base: Path, cache: ResultCache | None, form: s
         if inputs.choices["diff"]:
             run.fix(unsafe=unsafe)
     if inputs.choices["diff"]:
-        click.echo(run.diff(), nl=False)
+        run.print_diff()
     else:
         _print(report, form)
     return [report]

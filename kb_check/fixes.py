@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 import difflib
+import io
+import os
+import re
 import shutil
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from kb_check.reading import read_source
 from kb_check.salvage import parses
-from kb_check.source import Source, split_lines
 from kb_check.text_edits import Text, apart
 from simworlds.files import staged_file
+from simworlds.terminal.exact import print_exact
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
 
     from kb_check.findings import Finding
+    from kb_check.source import Source
+
+_CONTROL = re.compile(rb"[\x00-\x1f\x7f]")
+_QUOTED = re.compile(rb'[\x00-\x1f\x7f"\\]')
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,9 +67,26 @@ def write_fixed(path: Path, before: bytes, after: bytes) -> None:
         shutil.copymode(real, part)
 
 
-def unified_diff(name: str, before: str, after: str) -> str:
-    """The changes of one file, as ``diff -u`` writes them."""
-    lines = difflib.unified_diff(split_lines(before), split_lines(after), name, name)
-    return "".join(
-        line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines
+def unified_diff(name: str, before: bytes, after: bytes) -> bytes:
+    """The changes of one file, as ``diff -u`` writes them: to the byte, so that they can be applied."""
+    shown = _header_name(name)
+    # Lines end where patch sees them end.
+    old, new = io.BytesIO(before).readlines(), io.BytesIO(after).readlines()
+    lines = difflib.diff_bytes(difflib.unified_diff, old, new, shown, shown)
+    return b"".join(
+        line if line.endswith(b"\n") else line + b"\n\\ No newline at end of file\n" for line in lines
     )
+
+
+def _header_name(name: str) -> bytes:
+    """A file's name as a diff's header has it, so that neither a space nor a new line ends it too soon."""
+    data = os.fsencode(name)
+    if _CONTROL.search(data):
+        escaped = _QUOTED.sub(lambda match: b"\\%03o" % match[0][0], data)
+        return b'"%s"' % escaped
+    return data + b"\t" if b" " in data else data
+
+
+def print_diff(name: str, before: bytes, after: bytes) -> None:
+    """Prints the changes of one file."""
+    print_exact(unified_diff(name, before, after), read_source(before, name).encoding)

@@ -12,13 +12,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from kb_check.code_path import CodePath
+from kb_check.source import NOTEBOOK
 from simworlds.errors import UserError
-from simworlds.settings import built_bases, home_folder
+from simworlds.settings import home_folder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kb_check.migrate.kept_version import KeptVersion
+    from kb_check.migrate.chosen_versions import Versions
     from kb_check.migrate.plan import FileMigration
     from kb_check.migrate.trial import Trial
     from kb_check.project import Group, LoadedFile
@@ -26,10 +28,11 @@ if TYPE_CHECKING:
 
 _DECIDE, _FAILED, _INTERRUPTED = 1, 2, 130
 _REPORT = "MIGRATION.md"
+_STDIN, _STDIN_NAME = "-", "<stdin>"
 
 
 @click.command()
-@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument("paths", nargs=-1, required=True, type=CodePath())
 @click.option("--to", "target", metavar="VERSION", help="The Blender to migrate to. Default: the one in use.")
 @click.option(
     "--from",
@@ -40,24 +43,30 @@ _REPORT = "MIGRATION.md"
 @click.option(
     "--keep", metavar="VERSIONS", default="", help="Older Blenders that it must still run in, as 4.2,4.5."
 )
-@click.option("--diff", "form", flag_value="diff", help="Print the changes as a diff, and nothing else.")
-@click.option("--json", "form", flag_value="json", help="Print JSON.")
+@click.option("--diff", is_flag=True, help="Print a diff alone; what is left to decide goes to stderr.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.option("--write", is_flag=True, help=f"Write the files, and {_REPORT} beside them.")
 @click.option(
     "--run",
     is_flag=True,
     help="Run the scripts in --from (if it is here) and in --to, and compare the scenes.",
 )
-def migrate(paths: tuple[Path, ...], form: str | None, **choices: Any) -> None:
+def migrate(paths: tuple[Path, ...], **choices: Any) -> None:
     """Rewrite scripts and add-ons for another Blender.
+
+    PATHS are files and folders; - reads standard input and prints what becomes of it.
 
     What is certain is changed; the rest is listed, with the reason, the place and the source. Without --write nothing
     is changed, and the changes are shown. --run runs the code: use it only on code that you trust.
 
     Exit code 0: done. 1: a person must decide something. 2: something could not be read or written.
     """
+    if choices["diff"] and choices["as_json"]:
+        raise click.UsageError("--diff and --json exclude each other.")
+    if _is_stdin(paths) and (len(paths) > 1 or choices["write"] or choices["run"]):
+        raise click.UsageError("- (standard input) goes with no other path, nor with --write or --run.")
     try:
-        code = _migrate(paths, form, choices)
+        code = _migrate(paths, choices)
     except UserError as error:
         click.echo(f"Error: {error}", err=True)
         code = _FAILED
@@ -65,6 +74,10 @@ def migrate(paths: tuple[Path, ...], form: str | None, **choices: Any) -> None:
         click.echo("Interrupted. Files that were not written yet are unchanged.", err=True)
         code = _INTERRUPTED
     sys.exit(code)
+
+
+def _is_stdin(paths: Sequence[Path]) -> bool:
+    return any(str(path) == _STDIN for path in paths)
 
 
 @dataclass
@@ -77,142 +90,174 @@ class _Work:
     faults: list[str] = field(default_factory=list[str])
 
 
-def _migrate(paths: tuple[Path, ...], form: str | None, choices: dict[str, Any]) -> int:
-    from kb_check.files import find_files  # noqa: PLC0415 - not for --help
-    from kb_check.migrate.report import as_json, decision_lines, markdown, summary  # noqa: PLC0415
-    from kb_check.run import load  # noqa: PLC0415
+def _migrate(paths: tuple[Path, ...], choices: dict[str, Any]) -> int:
+    from kb_check.migrate.chosen_versions import read_versions  # noqa: PLC0415
+    from kb_check.migrate.report import is_left, markdown  # noqa: PLC0415 - not for --help
 
-    found = find_files(paths)
-    work = _Work(faults=found.faults)
-    groups = load(found.groups, work.faults)
-    target = _migrated(work, groups, choices)
-    trials = _trials(work, paths, target, choices["source"]) if choices["run"] else []
-    keep = [version for version in choices["keep"].split(",") if version.strip()]
-    if choices["write"]:
-        _write(work, paths[0], markdown(target, keep, work.results, trials))
-    if form == "json":
-        click.echo(
-            json.dumps(as_json(target, work.results, trials), indent=2).encode("utf-8", "replace").decode()
-        )
-    elif form == "diff" or not choices["write"]:
-        click.echo(_diff(work), nl=False)
-    if form is None:
-        for trial in trials:
-            click.echo(f"{trial.name}: {trial.verdict}")
-            for difference in trial.differences:
-                click.echo(f"  {difference}")
-        for line in decision_lines(work.results):
-            click.echo(line)
-        click.echo(summary(work.results))
-        if not choices["write"] and any(result.changes for result in work.results):
-            click.echo("Nothing was written: --write does.")
+    versions = read_versions(choices["target"], choices["source"], choices["keep"], home_folder())
+    report = _report_place(paths[0]) if choices["write"] else None
+    work = _Work()
+    _migrate_groups(work, _groups(paths, work.faults), versions)
+    trials = _trials(work, paths, versions) if choices["run"] else []
+    if report and work.results:
+        _write(work, report, markdown(versions, work.results, trials))
+    _print(work, versions, trials, choices, is_filter=_is_stdin(paths))
     for fault in work.faults:
         click.echo(f"Error: {fault}", err=True)
     if work.faults:
         return _FAILED
-    left = any(one.severity == "error" for result in work.results for one in result.decisions)
-    return _DECIDE if left or any(trial.after.error or trial.differences for trial in trials) else 0
+    differ = any(trial.after.error or trial.differences for trial in trials)
+    return _DECIDE if differ or any(map(is_left, work.results)) else 0
 
 
-def _migrated(work: _Work, groups: Sequence[Group], choices: dict[str, Any]) -> str:
-    """Migrates all groups; the version that they were migrated to."""
+def _print(
+    work: _Work, versions: Versions, trials: Sequence[Trial], choices: dict[str, Any], *, is_filter: bool
+) -> None:
+    """Prints the outcome; beside a diff, or code that another program reads, the words go to stderr."""
+    from kb_check.migrate.report import as_json, decision_lines, summary  # noqa: PLC0415 - not for --help
+
+    if choices["as_json"]:
+        told = json.dumps(as_json(versions, work.results, trials), indent=2)
+        click.echo(told.encode("utf-8", "replace").decode())
+        return
+    beside = choices["diff"] or is_filter
+    if is_filter and not choices["diff"]:
+        _print_code(work)
+    elif beside or not choices["write"]:
+        _print_diff(work)
+    for trial in trials:
+        click.echo(f"{trial.name}: {trial.verdict}", err=beside)
+        for difference in trial.differences:
+            click.echo(f"  {difference}", err=beside)
+    for line in decision_lines(work.results):
+        click.echo(line, err=beside)
+    if work.results:
+        click.echo(summary(work.results, versions), err=beside)
+    if not choices["write"] and not beside and any(result.changes for result in work.results):
+        click.echo("Nothing was written: --write does.")
+
+
+def _groups(paths: Sequence[Path], faults: list[str]) -> list[Group]:
+    """The files, read; standard input is one."""
+    from kb_check.files import find_files  # noqa: PLC0415 - not for --help
+    from kb_check.project import LoadedFile  # noqa: PLC0415
+    from kb_check.run import load  # noqa: PLC0415
+    from kb_check.source import MOST_BYTES  # noqa: PLC0415
+
+    if _is_stdin(paths):
+        data = sys.stdin.buffer.read(MOST_BYTES + 1)
+        if len(data) <= MOST_BYTES:
+            return [(LoadedFile(_STDIN_NAME, data),)]
+        faults.append(f"Standard input is larger than {MOST_BYTES >> 20} MiB.")
+        return []
+    found = find_files(paths)
+    faults += found.faults
+    return load(found.groups, faults)
+
+
+def _migrate_groups(work: _Work, groups: Sequence[Group], versions: Versions) -> None:
     from kb_check.checker import Checker  # noqa: PLC0415 - not for --help
     from kb_check.migrate.place import version_of  # noqa: PLC0415
     from kb_check.migrate.plan import Migrator  # noqa: PLC0415
     from kb_check.reading import read_source  # noqa: PLC0415
-    from kb_check.versions import base_files  # noqa: PLC0415
-    from kb_serve.bases import Bases  # noqa: PLC0415
-    from simworlds.releases import minor_of  # noqa: PLC0415
 
-    home = home_folder()
-    if choices["target"]:
-        (base,) = base_files([choices["target"]], home).values()
-    else:
-        bases = Bases(home)
-        base = bases.file()
-        bases.close()
-    written_for = version_of(minor_of(choices["source"])) if choices["source"] else None
+    written_for = version_of(versions.source) if versions.source else None
     with ExitStack() as stack:
-        checker = stack.enter_context(Checker(base))
-        migrator = Migrator(checker, _kept(stack, choices["keep"]), written_for)
+        checker = stack.enter_context(Checker(versions.base))
+        migrator = Migrator(checker, versions.kept(stack), written_for)
         for group in groups:
             sources = {file.name: read_source(file.data, file.name) for file in group}
             wanted = {file.name for file in group if file.wanted}
             for name in sorted(wanted):
-                if sources[name].cells:
+                if name.endswith(NOTEBOOK):
                     work.faults.append(f"{name} is a notebook: notebooks are not migrated.")
                 elif sources[name].fault:
                     work.faults.append(f"{name} cannot be read: {sources[name].fault}.")
-            can = {name for name in wanted if not sources[name].cells and not sources[name].fault}
-            beside = {
-                name: source.text for name, source in sources.items() if name not in can and not source.cells
-            }
-            texts = {name: sources[name].text for name in sorted(can)}
+            can = {name for name in wanted if not name.endswith(NOTEBOOK) and not sources[name].fault}
+            beside = {name: source.text for name, source in sources.items() if name not in can}
             work.loaded.update({file.name: file for file in group if file.name in can})
             work.sources.update({name: sources[name] for name in can})
-            work.results += migrator.migrate(texts, beside)
-        return checker.names.version
+            if can:
+                texts = {name: sources[name].text for name in sorted(can)}
+                work.results += migrator.migrate(texts, beside)
 
 
-def _kept(stack: ExitStack, text: str) -> list[KeptVersion]:
-    from kb_check.checker import Checker  # noqa: PLC0415 - not for --help
-    from kb_check.migrate.kept_version import KeptVersion  # noqa: PLC0415
-    from kb_check.migrate.place import version_of  # noqa: PLC0415
-    from simworlds.releases import minor_of  # noqa: PLC0415
+def _print_diff(work: _Work) -> None:
+    from kb_check.fixes import print_diff  # noqa: PLC0415 - not for --json
 
-    bases = built_bases(home_folder())
-    versions = [minor_of(version) for version in text.split(",") if version.strip()]
-    return [
-        KeptVersion(
-            version_of(version), stack.enter_context(Checker(bases[version])) if version in bases else None
-        )
-        for version in versions
-    ]
+    for result in work.results:
+        if (data := _bytes(work, result)) is not None:
+            print_diff(result.name, work.loaded[result.name].data, data)
 
 
-def _diff(work: _Work) -> str:
-    from kb_check.fixes import unified_diff  # noqa: PLC0415 - not for --json
+def _print_code(work: _Work) -> None:
+    """Prints the text of standard input as it is now."""
+    from simworlds.terminal.exact import print_exact  # noqa: PLC0415 - for standard input alone
 
-    changed = (result for result in work.results if result.new != result.old)
-    return "".join(unified_diff(result.name, result.old, result.new) for result in changed)
+    for result in work.results:
+        if (data := _bytes(work, result)) is not None:
+            print_exact(data, work.sources[result.name].encoding)
 
 
 def _bytes(work: _Work, result: FileMigration) -> bytes | None:
-    """A file as it is to be written; None where its encoding lacks a letter of the new text."""
+    """A file as it is to be written; None where its encoding lacks a letter of the new text, which is a fault."""
+    if result.new == result.old:
+        return work.loaded[result.name].data
     try:
         return result.new.encode(work.sources[result.name].encoding)
     except UnicodeEncodeError:
+        fault = f"{result.name} cannot be migrated: its encoding lacks a letter of the new text."
+        if fault not in work.faults:
+            work.faults.append(fault)
         return None
 
 
-def _write(work: _Work, first: Path, report: str) -> None:
+def _report_place(first: Path) -> Path:
+    """Where the report goes. Raises UserError where somebody else's file is there."""
+    from kb_check.migrate.report import is_report  # noqa: PLC0415 - only with --write
+
+    place = (first if first.is_dir() else first.parent) / _REPORT
+    if place.exists() and not is_report(_text(place)):
+        raise UserError(
+            f"{place} is there already, and not a report of this command, which would take its place. Rename it, and "
+            "run this again. Nothing was written."
+        )
+    return place
+
+
+def _text(place: Path) -> str:
+    try:
+        return place.read_text(encoding="utf-8", errors="replace") if place.exists() else ""
+    except OSError as error:
+        raise UserError(f"{place} cannot be read: {error.strerror or error}.") from None
+
+
+def _write(work: _Work, place: Path, report: str) -> None:
     from kb_check.fixes import write_fixed  # noqa: PLC0415 - only with --write
+    from kb_check.migrate.report import joined  # noqa: PLC0415
     from simworlds.files import write_whole  # noqa: PLC0415
 
     for result in work.results:
-        if result.new == result.old:
-            continue
         data = _bytes(work, result)
-        if data is None:
-            work.faults.append(f"{result.name} was not written: its encoding lacks a letter of the new text.")
+        if data is None or result.new == result.old:
             continue
         try:
             write_fixed(Path(result.name), work.loaded[result.name].data, data)
         except OSError as error:
             work.faults.append(f"{result.name} cannot be written: {error.strerror or error}.")
-    place = (first if first.is_dir() else first.parent) / _REPORT
     try:
-        write_whole(place, report)
+        write_whole(place, joined(report, _text(place)))
     except OSError as error:
         work.faults.append(f"{place} cannot be written: {error.strerror or error}.")
-    click.echo(f"Report: {place}", err=True)
+    else:
+        click.echo(f"Report: {place}", err=True)
 
 
-def _trials(work: _Work, paths: Sequence[Path], target: str, source: str | None) -> list[Trial]:
+def _trials(work: _Work, paths: Sequence[Path], versions: Versions) -> list[Trial]:
     """Runs every path that is a script, or the folder of an add-on, as it was and as it is now."""
     from kb_check.migrate.trial import runtime_at_hand, try_out  # noqa: PLC0415 - only with --run
 
-    home = home_folder()
+    home, target, source = home_folder(), versions.target, versions.source
     new = runtime_at_hand(target, home)
     if new is None:
         raise UserError(

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from kb_check.fixes import apply_fixes, unified_diff, write_fixed
+from kb_check.fixes import apply_fixes, print_diff, write_fixed
 from kb_check.project import LoadedFile
 from kb_check.reading import read_source
 from kb_check.report import FileReport, Report
@@ -75,12 +75,10 @@ class Run:
         for group, fixed in zip(self.before, self.groups, strict=True):
             yield from ((old, new) for old, new in zip(group, fixed, strict=True) if old.data != new.data)
 
-    def diff(self) -> str:
-        """What fixes changed, as one unified diff."""
-        return "".join(
-            unified_diff(old.name, read_source(old.data, old.name).text, read_source(new.data, new.name).text)
-            for old, new in self.changes()
-        )
+    def print_diff(self) -> None:
+        """Prints what fixes changed, as one unified diff."""
+        for old, new in self.changes():
+            print_diff(old.name, old.data, new.data)
 
     def write(self) -> None:
         """Writes the files that fixes changed; one that cannot be written is a fault."""

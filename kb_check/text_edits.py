@@ -46,6 +46,10 @@ class Text:
         """The line of the original that a line came from."""
         return self.origins[min(line, len(self.origins)) - 1] if self.origins else line
 
+    def now(self, line: int) -> int:
+        """The line that a line of the original is now; where it is gone, the one that stands in its place."""
+        return next((now for now, origin in enumerate(self.origins, 1) if origin >= line), line)
+
     def offsets(self, span: Span) -> tuple[int, int]:
         """Where a span begins and ends, in characters from the start."""
         last = len(self._starts) - 1

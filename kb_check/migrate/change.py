@@ -15,9 +15,9 @@ Version = tuple[int, int]
 class Change:
     """One certain change.
 
-    ``edits`` are of the statements that change, ``additions`` hold in every version (an import). ``since`` is the
-    first version that needs the new form, ``targets`` are the paths that the new form uses. ``is_needed`` is False
-    where the target still takes the old form.
+    ``edits`` are of the statements that change, ``additions`` hold in every version (an import). ``symbol`` is what the
+    old form uses; ``since`` is the first version that needs the new form, ``targets`` are the paths that this uses.
+    ``is_needed`` is False where the target still takes the old form.
     """
 
     rule: str
@@ -28,6 +28,7 @@ class Change:
     targets: tuple[str, ...] = ()
     additions: tuple[Edit, ...] = ()
     is_needed: bool = True
+    symbol: str = ""
 
 
 @dataclass(frozen=True, slots=True)

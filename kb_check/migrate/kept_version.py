@@ -16,10 +16,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class KeptVersion:
-    """A Blender that the script must keep working in; ``checker`` is of its base, None where there is none."""
+    """A Blender that the script must keep working in; ``checker`` is of its base, None where there is none.
+
+    ``histories`` are bases of other Blenders: they know what older ones had.
+    """
 
     version: Version
     checker: Checker | None = None
+    histories: tuple[BaseReader, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The version as people write it."""
+        return ".".join(map(str, self.version))
 
     def takes(self, change: Change, target: BaseReader) -> bool:
         """Whether this Blender takes a change's new form; ``target`` knows since when its symbols are there."""
@@ -27,14 +36,33 @@ class KeptVersion:
             return True
         return bool(change.targets) and all(self._has(path, target) for path in change.targets)
 
+    def came_later(self, path: str, target: BaseReader) -> str:
+        """The first Blender that is known to have a symbol, where this one is known to be too old for it; else ""."""
+        gone = target.removed(path)
+        first, lacked = (gone[0], "") if gone else target.arrival(path)
+        if not first or version_of(first) <= self.version or (lacked and version_of(lacked) < self.version):
+            return ""
+        if self.checker is not None:
+            return "" if _known(self.checker, path) else first
+        return "" if self._had(path) else first
+
     def _has(self, path: str, target: BaseReader) -> bool:
         if self.checker is not None:
             return _known(self.checker, path)
+        if self._had(path):
+            return True
         # Without a base, what the history tells: of arguments, values and sockets it tells too little.
         if any(mark in path for mark in '([:"'):
             return False
         since = target.arrival(path)[0] or target.arrival(path.rpartition(".")[0])[0]
         return not since or version_of(since) <= self.version
+
+    def _had(self, path: str) -> bool:
+        """Whether a later Blender that lacks a symbol knows that this one had it."""
+        spans = (reader.removed(path) for reader in self.histories)
+        return any(
+            span[0] and version_of(span[0]) <= self.version <= version_of(span[1]) for span in spans if span
+        )
 
 
 def _known(checker: Checker, path: str) -> bool:

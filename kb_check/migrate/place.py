@@ -235,7 +235,9 @@ class Place:
             since = version_of(successors[0].version if successors else removed[2])
         elif is_deprecated:
             since = max((version_of(reader.arrival(path)[0] or "0.0") for path in uses), default=since)
-        return Change(rule, tuple(edits), told, source, since, uses, tuple(additions), not is_deprecated)
+        return Change(
+            rule, tuple(edits), told, source, since, uses, tuple(additions), not is_deprecated, symbol
+        )
 
 
 def in_order(nodes: Iterable[ast.expr | ast.keyword]) -> list[ast.expr | ast.keyword]:

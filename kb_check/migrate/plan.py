@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import ast
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from kb_check.findings import Span
+from kb_build.flow.trees import walk
+from kb_build.symbols.paths import as_code
+from kb_check.findings import Finding, Span
 from kb_check.migrate.change import Change, Decision, Done
 from kb_check.migrate.guards import can_be_guarded, guarded_edits, innermost, plain_edits
 from kb_check.migrate.place import Place, version_of
@@ -20,20 +23,21 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from kb_check.checker import Checker, Read
-    from kb_check.findings import Edit, Finding
+    from kb_check.findings import Edit
     from kb_check.migrate.change import Version
     from kb_check.migrate.kept_version import KeptVersion
     from kb_check.package import Package
 
 _ROUNDS = 40
 _TOLD = 160
+_NEWER = "newer-name"  # what reports call a name that a Blender to be kept does not have yet
 _MOST_TRIALS = 60  # to find the changes that leave a text which cannot be read
 
 
 @dataclass
 class FileMigration:
-    """What happened to one file. ``new`` is ``old`` where nothing could be changed; ``kept`` are errors that the new
-    text has in a Blender that is to be kept, and the old one did not.
+    """What happened to one file. ``new`` is ``old`` where nothing could be changed; ``kept`` are the errors that the
+    new text has in Blenders that are to be kept, without those that are among the decisions.
     """
 
     name: str
@@ -41,7 +45,7 @@ class FileMigration:
     new: str = ""
     changes: list[Done] = field(default_factory=list[Done])
     decisions: list[Decision] = field(default_factory=list[Decision])
-    kept: list[tuple[str, Finding]] = field(default_factory=list[tuple[str, "Finding"]])
+    kept: list[tuple[str, Finding]] = field(default_factory=list[tuple[str, Finding]])
 
 
 class Migrator:
@@ -63,8 +67,9 @@ class Migrator:
         """Migrates the files of one add-on: path → text. ``beside`` are its other files, which stay as they are."""
         states = {name: _State(FileMigration(name, code)) for name, code in files.items()}
         written_for = self._written_for
+        package = self._target.package()
         for _ in range(_ROUNDS):
-            package = self._read(states.values(), beside or {})
+            package = self._read(states.values(), beside or {}, self._target)
             for state in states.values():
                 state.findings = self._target.check(state.reading, package)
             if written_for is None:
@@ -74,22 +79,23 @@ class Migrator:
                 break
         for state in states.values():
             self._finish(state)
-        self._check_kept(states.values())
+            self._check_history(state, package)
+        self._check_kept(states.values(), beside or {})
         return [state.file for state in states.values()]
 
-    def _read(self, states: Iterable[_State], beside: Mapping[str, str]) -> Package:
-        """Reads all files anew: what one says about types holds in the others, too."""
+    @staticmethod
+    def _read(states: Iterable[_State], beside: Mapping[str, str], checker: Checker) -> Package:
+        """Reads all files anew, for a Blender: what one says about types holds in the others, too."""
         states = list(states)
         texts = {**beside, **{state.file.name: state.text.code for state in states}}
         paths = paths_in_package(texts)
         if len(texts) == 1:
-            reads = {path: self._target.read(texts[name]) for name, path in paths.items()}
+            reads = {path: checker.read(texts[name]) for name, path in paths.items()}
         else:
-            reads = self._target.read_files({path: texts[name] for name, path in paths.items()})
-        package = self._target.package(reads.values())
+            reads = checker.read_files({path: texts[name] for name, path in paths.items()})
         for state in states:
             state.read = reads[paths[state.file.name]]
-        return package
+        return checker.package(reads.values())
 
     def _oldest(self, states: Iterable[_State]) -> Version:
         """The oldest Blender that had something which the files use and the target lacks."""
@@ -134,6 +140,8 @@ class Migrator:
         new = made(chosen)
         if new.code == state.text.code:
             return False
+        for change in chosen:
+            self._note_kept(state, place, change, with_guard=with_guard)
         told = (_told(state.text, change, guarded=with_guard) for change in chosen)
         state.file.changes += sorted(told, key=lambda done: done.line)
         state.text = new
@@ -166,13 +174,31 @@ class Migrator:
         return change.is_needed or all(kept.takes(change, reader) for kept in self._keep)
 
     def _needs_guard(self, place: Place, change: Change) -> bool:
+        """Whether an older Blender needs the old form, and has it."""
         reader = self._target.names.reader
+        return any(not kept.came_later(change.symbol, reader) for kept in self._lacking(place, change))
+
+    def _lacking(self, place: Place, change: Change) -> Iterator[KeptVersion]:
+        """The Blenders to be kept that come to where a change is made, and are not known to take its new form."""
+        reader = self._target.names.reader
+        return (kept for kept in self._coming(place, change) if not kept.takes(change, reader))
+
+    def _coming(self, place: Place, change: Change) -> Iterator[KeptVersion]:
+        """The Blenders to be kept that come to where a change is made."""
         nodes = [innermost(place, edit.span) for edit in change.edits]
-        return any(
-            not kept.takes(change, reader)
-            and any(node is None or reaches(node, place.parents, kept.version) for node in nodes)
-            for kept in self._keep
-        )
+        for kept in self._keep:
+            if any(node is None or reaches(node, place.parents, kept.version) for node in nodes):
+                yield kept
+
+    def _note_kept(self, state: _State, place: Place, change: Change, *, with_guard: bool) -> None:
+        """Notes the Blenders without a base that get an old form which came later, or a new one that they may lack."""
+        line = state.text.origin(min(edit.span.line for edit in change.edits))
+        coming = self._coming(place, change) if with_guard else self._lacking(place, change)
+        for kept in coming:
+            first = kept.came_later(change.symbol, self._target.names.reader)
+            if first and kept.checker is None and kept.version < change.since:
+                message = f"{_came(change.symbol, first)} Decide what {kept.name} gets here."
+                state.unmet.append((kept.name, line, change.rule, message))
 
     # What is left.
 
@@ -197,29 +223,56 @@ class Migrator:
             )  # fmt: skip
         file.decisions.sort(key=lambda decision: decision.line)
 
-    def _check_kept(self, states: Iterable[_State]) -> None:
-        """Looks at the new text as the older Blenders see it: what is wrong there now and was not before."""
-        states = [state for state in states if state.file.changes]
+    def _check_history(self, state: _State, package: Package) -> None:
+        """What of the new text is newer than the Blenders to be kept of which there is no base."""
+        for name, line, rule, message in state.unmet:
+            now = state.text.now(line)
+            state.file.kept.append((name, Finding(rule, "error", Span(now, 0, now, 0), message)))
+        without = [kept for kept in self._keep if kept.checker is None]
+        if not without or state.reading.error is not None:
+            return
+        place = Place(self._target.script(state.reading, package), state.findings, _version(self._target))
+        reader, asked = self._target.names.reader, _asked_members(place)
+        known: set[tuple[str, int]] = set()
+        for row in place.script.resolutions():
+            if row.guarded or not row.sure or not row.symbols or asked & _members(row.node):
+                continue
+            span = place.script.name_span(row.node)
+            for kept in without:
+                firsts = [kept.came_later(symbol, reader) for symbol in row.symbols]
+                key = kept.name, span.line
+                if all(firsts) and key not in known and reaches(row.node, place.parents, kept.version):
+                    known.add(key)
+                    message = _came(row.symbols[0], firsts[0])
+                    state.file.kept.append((kept.name, Finding(_NEWER, "error", span, message)))
+
+    def _check_kept(self, states: Iterable[_State], beside: Mapping[str, str]) -> None:
+        """Looks at the new text as the older Blenders see it: what is wrong there, and is not a decision already."""
+        states = list(states)
         for kept in self._keep:
             if kept.checker is None:
                 continue
-            for state, before, after in zip(
-                states, _errors(kept.checker, [state.file.old for state in states]),
-                _errors(kept.checker, [state.file.new for state in states]), strict=True,
-            ):  # fmt: skip
-                known = {(one.rule, one.symbol) for one in before}
-                name = ".".join(map(str, kept.version))
-                state.file.kept += [(name, one) for one in after if (one.rule, one.symbol) not in known]
+            package = self._read(states, beside, kept.checker)
+            for state in states:
+                decided = {(one.now, one.rule) for one in state.file.decisions}
+                state.file.kept += [
+                    (kept.name, one)
+                    for one in kept.checker.check(state.reading, package)
+                    if one.severity == "error" and (one.span.line, one.rule) not in decided
+                ]
 
 
 @dataclass
 class _State:
-    """A file while it is migrated."""
+    """A file while it is migrated. ``unmet`` is what changes do not give to a Blender: (version, line of the original,
+    rule, message).
+    """
 
     file: FileMigration
     text: Text = field(init=False)
     read: Read | None = None
-    findings: list[Finding] = field(default_factory=list["Finding"])
+    findings: list[Finding] = field(default_factory=list[Finding])
+    unmet: list[tuple[str, int, str, str]] = field(default_factory=list[tuple[str, int, str, str]])
 
     def __post_init__(self) -> None:
         self.text = Text.original(self.file.old.replace("\r\n", "\n") if self._windows else self.file.old)
@@ -245,10 +298,23 @@ def _version(checker: Checker) -> Version:
     return checker.version[0], checker.version[1]
 
 
-def _errors(checker: Checker, codes: Sequence[str]) -> list[list[Finding]]:
-    reads = [checker.read(code) for code in codes]
-    package = checker.package(reads)
-    return [[one for one in checker.check(read, package) if one.severity == "error"] for read in reads]
+def _asked_members(place: Place) -> frozenset[str]:
+    """The members that a script asks for by ``hasattr`` or ``getattr``: it is ready for Blenders that lack them."""
+    return frozenset(
+        call.args[1].value
+        for call in place.script.all(ast.Call)
+        if isinstance(call.func, ast.Name) and call.func.id in {"hasattr", "getattr"} and len(call.args) > 1
+        and isinstance(call.args[1], ast.Constant) and isinstance(call.args[1].value, str)
+    )  # fmt: skip
+
+
+def _members(node: ast.AST) -> frozenset[str]:
+    """The members that an expression reads."""
+    return frozenset(part.attr for part in walk(node) if isinstance(part, ast.Attribute))
+
+
+def _came(path: str, first: str) -> str:
+    return f"`{as_code(path)}` is there from Blender {first} on."
 
 
 def _largest(changes: Sequence[Change], holds: Callable[[Sequence[Change]], bool]) -> list[Change]:

@@ -10,19 +10,31 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from kb_check.migrate.change import Done
+    from kb_check.migrate.chosen_versions import Versions
     from kb_check.migrate.plan import FileMigration
     from kb_check.migrate.trial import Trial
 
 
+_TITLE = "# Migration to Blender "
 _TABLE = ("| line | from | to | reason | source |", "| --- | --- | --- | --- | --- |")
 
 
-def markdown(
-    target: str, keep: Sequence[str], files: Sequence[FileMigration], trials: Sequence[Trial]
-) -> str:
+def is_report(text: str) -> bool:
+    """Whether a text begins as the reports do."""
+    return text.startswith(_TITLE)
+
+
+def joined(report: str, earlier: str) -> str:
+    """A report with those of earlier runs below it; they alone where it says nothing new."""
+    if not earlier or earlier == report or earlier.startswith(f"{report}\n{_TITLE}"):
+        return earlier or report
+    return f"{report}\n{earlier}"
+
+
+def markdown(versions: Versions, files: Sequence[FileMigration], trials: Sequence[Trial]) -> str:
     """The whole report: every change with its reason and source, and what a person must decide."""
-    kept = f" (and still {', '.join(keep)})" if keep else ""
-    lines = [f"# Migration to Blender {target}{kept}", "", summary(files), ""]
+    kept = f" (and still {', '.join(versions.keep)})" if versions.keep else ""
+    lines = [f"{_TITLE}{versions.target}{kept}", "", summary(files, versions), ""]
     if trials:
         lines += ["## Runs", "", *_runs(trials), ""]
     decided = [file for file in files if file.decisions or file.kept]
@@ -60,16 +72,24 @@ def _row(change: Done) -> str:
     return f"| {' | '.join(cells)} |"
 
 
-def summary(files: Sequence[FileMigration]) -> str:
+def is_left(file: FileMigration) -> bool:
+    """Whether a person must decide something."""
+    return bool(file.kept) or any(decision.severity == "error" for decision in file.decisions)
+
+
+def summary(files: Sequence[FileMigration], versions: Versions) -> str:
     """One sentence about all files."""
     changes = sum(len(file.changes) for file in files)
     changed = sum(bool(file.changes) for file in files)
     kinds = Counter(decision.severity for file in files for decision in file.decisions)
-    left = kinds["error"]
+    left = kinds["error"] + sum(len(file.kept) for file in files)
     parts = [f"{_many(changes, 'change')} in {_many(changed, 'file')}"]
     parts.append(f"{_many(left, 'place')} to decide" if left else "nothing is left to decide")
     if kinds["warning"]:
         parts.append(_many(kinds["warning"], "warning"))
+    if versions.without_base:
+        names = ", ".join(versions.without_base)
+        parts.append(f"there is no base of {names}, so that not all that breaks there is known")
     return f"{'; '.join(parts)}."
 
 
@@ -84,11 +104,13 @@ def decision_lines(files: Sequence[FileMigration]) -> Iterator[str]:
             yield f"{file.name}:{finding.span.line}: in Blender {version}: {' '.join(finding.message.split())}"
 
 
-def as_json(target: str, files: Sequence[FileMigration], trials: Sequence[Trial]) -> dict[str, Any]:
+def as_json(versions: Versions, files: Sequence[FileMigration], trials: Sequence[Trial]) -> dict[str, Any]:
     """The same for programs. Lines count from 1: ``line`` in the original, ``now`` in the new text."""
     return {
         "format": 1,
-        "to": target,
+        "to": versions.target,
+        "keep": list(versions.keep),
+        "without_base": list(versions.without_base),
         "files": [
             {
                 "path": file.name,

@@ -65,6 +65,10 @@ class Command:
         done = run_here([self.name, *arguments], self.environment, folder or self.folder, given)
         return Outcome(done.returncode, done.stdout.decode(), done.stderr.decode())
 
+    def bytes_of(self, *arguments: str, given: bytes = b"") -> bytes:
+        """What it prints."""
+        return run_here([self.name, *arguments], self.environment, self.folder, given).stdout
+
     def as_process(self, *arguments: str, given: bytes = b"", folder: Path | None = None) -> Outcome:
         """The same in a process of its own."""
         done = subprocess.run(

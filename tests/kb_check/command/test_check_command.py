@@ -291,6 +291,12 @@ def test_a_diff_changes_nothing(command: Command) -> None:
     assert command.read("a.py") == WRONG.encode()
 
 
+def test_a_diff_for_a_program_is_what_the_file_holds(command: Command) -> None:
+    command.write("a.py", f"# coding: latin-1\r\n# \xe9\x0c\r\n{WRONG}".encode("latin-1"))
+    printed = command.bytes_of("--diff", "a.py")
+    assert b"\n # coding: latin-1\r\n # \xe9\x0c\r\n import bpy\n" in printed
+
+
 def test_unsure_fixes_are_applied_only_when_wanted(command: Command) -> None:
     command.write("a.py", "import bpy\nbpy.context.object.locatoin.x = 1\n")
     assert "\n--fix --unsafe-fixes mends 1 finding." in command("--fix").out
@@ -339,10 +345,17 @@ def test_several_processes_find_what_one_does(command: Command) -> None:
 def test_nothing_in_a_file_steers_the_terminal(command: Command) -> None:
     code = f"import bpy\nx = '''{HOSTILE}'''; bpy.context.object.draw_type\nbpy.ops.mesh.x(a='{HOSTILE}')\n"
     command.write("\x1b[31mevil.py", code)
-    for form in ([], ["--json"], ["--github"], ["--diff"], ["--sarif"]):
+    for form in ([], ["--json"], ["--github"], ["--sarif"]):
         assert not steering(command(*form).out)
     printed = on_terminal([*SIMWORLDS, "check", str(command.folder)], command.environment)
     assert "draw_type" in printed
+    assert not steering(printed, is_terminal=True)
+
+
+def test_no_diff_steers_the_terminal(command: Command) -> None:
+    command.write("\x1b[31mevil.py", f"{WRONG}x = '''{HOSTILE}'''\n")
+    printed = on_terminal([*SIMWORLDS, "check", "--diff", str(command.folder)], command.environment)
+    assert "display_type" in printed
     assert not steering(printed, is_terminal=True)
 
 

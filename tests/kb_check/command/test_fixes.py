@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
 import stat
+import subprocess
 from typing import TYPE_CHECKING
 
 import pytest
@@ -77,10 +79,18 @@ def test_many_fixes_take_no_more_than_their_share() -> None:
     assert fixed.text == "y\n" * 20_000
 
 
-def test_a_diff_is_what_patch_takes() -> None:
-    assert unified_diff("a.py", "x\ny", "x\nz") == (
-        "--- a.py\n+++ a.py\n@@ -1,2 +1,2 @@\n x\n-y\n\\ No newline at end of file\n+z\n\\ No newline at end of file\n"
-    )
+@pytest.mark.parametrize("tool", [["patch", "-p0"], ["git", "apply", "-p0"]], ids=["patch", "git"])
+@pytest.mark.parametrize("name", ["a.py", "a b.py", "é.py", 'q"\tb\\s\n.py'])
+@pytest.mark.parametrize(
+    "code", ["{}\ny", "{}\r\ny\r\n", "\ufeff{}\ny\n", "x\x0c\x85\u2028\r\n{}\n", "x\r{}\r\n", "\x1b[31m{}\n"]
+)
+def test_a_diff_can_be_applied(tmp_path: Path, code: str, name: str, tool: list[str]) -> None:
+    if shutil.which(tool[0]) is None:
+        pytest.skip(f"{tool[0]} is not installed")
+    before, after = code.format("1").encode(), code.format("2").encode()
+    (tmp_path / name).write_bytes(before)
+    subprocess.run(tool, input=unified_diff(name, before, after), cwd=tmp_path, check=True)
+    assert (tmp_path / name).read_bytes() == after
 
 
 def test_permissions_and_links_stay(tmp_path: Path) -> None:

@@ -44,6 +44,86 @@ def test_diff_prints_the_diff_alone(command: Command) -> None:
     assert done.out.splitlines()[-1].startswith("+bpy.context")
 
 
+def test_beside_a_diff_stderr_tells_what_is_left(command: Command) -> None:
+    command.write("old.py", OLD + "bpy.context.object.layers[0] = True\n")
+    done = command("old.py", "--diff")
+    assert "layers` does not exist" not in done.out
+    assert "old.py:3: error[unknown-attribute] `bpy.types.Object.layers` does not exist" in done.err
+    assert "1 place to decide" in done.err
+
+
+def test_the_diff_of_a_file_from_windows_can_be_applied(command: Command) -> None:
+    command.write("old.py", OLD.replace("\n", "\r\n"))
+    assert b'\r\n+bpy.context.object.display_type = "WIRE"\r\n' in command.bytes_of("old.py", "--diff")
+
+
+def test_standard_input_is_printed_as_it_is_now(command: Command) -> None:
+    old = f"# \xe9\r\n{OLD}bpy.context.object.layers\n"
+    done = command("-", given=old.encode())
+    assert done.code == 1
+    assert "<stdin>:4: error[unknown-attribute]" in done.err
+    assert command.bytes_of("-", given=old.encode()) == old.replace("draw_type", "display_type").encode()
+    assert command("-", "--diff", given=old.encode()).out.startswith("--- <stdin>")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["-", "--write"], "goes with no other path"),
+        (["-", "old.py"], "goes with no other path"),
+        ([""], "It is empty"),
+        (["old.py", "--diff", "--json"], "exclude each other"),
+        (["old.py", "--from", "9.9"], "--from 9.9 is newer than"),
+        (["old.py", "--keep", "4.2,9.8,9.9"], "--keep 9.8,9.9 is newer than"),
+    ],
+)
+def test_what_contradicts_itself_is_refused(command: Command, arguments: list[str], told: str) -> None:
+    path = command.write("old.py", OLD)
+    done = command(*arguments)
+    assert (done.code, done.out) == (2, "")
+    assert told in done.err
+    assert path.read_text() == OLD
+
+
+def test_nothing_is_said_of_files_that_were_not_read(command: Command) -> None:
+    (command.folder / "empty").mkdir()
+    done = command("none.py", "empty", "--write")
+    assert (done.code, done.out) == (2, "")
+    assert [one.name for one in command.folder.iterdir()] == ["empty"]
+
+
+def test_a_report_of_somebody_else_is_not_replaced(command: Command) -> None:
+    path = command.write("own/old.py", OLD)
+    mine = command.write("own/MIGRATION.md", "# My own text\n")
+    done = command("own", "--write")
+    assert done.code == 2
+    assert "Rename it" in done.err
+    assert (path.read_text(), mine.read_text()) == (OLD, "# My own text\n")
+
+
+def test_a_later_report_stands_above_the_earlier_one(command: Command) -> None:
+    command.write("old.py", OLD)
+    report = command.folder / "MIGRATION.md"
+    command("old.py", "--write")
+    first = report.read_text()
+    command("old.py", "--write")
+    second = report.read_text()
+    assert second.endswith(f"\n{first}")
+    assert "0 changes" in second
+    command("old.py", "--write")
+    assert report.read_text() == second
+
+
+def test_what_breaks_in_a_kept_version_is_left_to_decide(command: Command) -> None:
+    command.write("new.py", "import bpy\nbpy.data.node_groups[0].interface.new_socket('a')\n")
+    done = command("new.py", "--keep", "3.6")
+    assert done.code == 1
+    assert (
+        "new.py:2: in Blender 3.6: `bpy.types.NodeTree.interface` is there from Blender 4.0 on." in done.out
+    )
+    assert "1 place to decide; there is no base of 3.6" in done.out
+
+
 def test_json_has_changes_and_decisions(command: Command) -> None:
     command.write("old.py", OLD + "bpy.context.object.layers[0] = True\n")
     (file,) = json.loads(command("old.py", "--json").out)["files"]

@@ -61,6 +61,51 @@ def test_what_the_target_still_takes_stays_for_a_version_that_lacks_the_new_form
     assert migrated(checker, code, (4, 5)).new == code
 
 
+@pytest.mark.parametrize("keep", [(3, 6), (2, 79)])
+def test_no_guard_gives_an_older_version_what_came_later(checker: Checker, keep: tuple[int, int]) -> None:
+    code = "import bpy\nbpy.context.scene.render.engine = 'BLENDER_EEVEE_NEXT'\n"
+    file = migrated(checker, code, keep)
+    assert file.new == code.replace("_NEXT", "")
+    ((version, finding),) = file.kept
+    assert (version, finding.span.line) == (f"{keep[0]}.{keep[1]}", 2)
+    assert "is there from Blender 4.2 on" in finding.message
+
+
+def test_a_guard_for_one_version_does_not_hide_what_another_lacks(checker: Checker) -> None:
+    code = "import bpy\nbpy.context.scene.render.engine = 'BLENDER_EEVEE_NEXT'\n"
+    file = migrated(checker, code, (2, 79), (4, 2))
+    assert "bpy.app.version >= (5, 0, 0)" in file.new
+    assert [version for version, _ in file.kept] == ["2.79"]
+
+
+@pytest.mark.parametrize(
+    ("line", "versions"),
+    [
+        ("tree.interface", ["3.6"]),
+        ("if bpy.app.version >= (4, 0, 0): tree.interface", []),
+        ("if hasattr(tree, 'interface'): tree.interface.new_socket('a')", []),
+        ("tree.nodes", []),
+    ],
+)
+def test_names_that_a_kept_version_lacks_are_left_to_a_person(
+    checker: Checker, line: str, versions: list[str]
+) -> None:
+    file = migrated(checker, f"import bpy\ntree = bpy.data.node_groups[0]\n{line}\n", (3, 6), (4, 2))
+    assert [version for version, _ in file.kept] == versions
+
+
+def test_errors_in_a_kept_version_are_those_of_the_whole_package(checker: Checker) -> None:
+    files = {
+        "addon/__init__.py": "import bpy\ndef register():\n    bpy.types.Scene.mine = bpy.props.IntProperty()\n",
+        "addon/use.py": "import bpy\nbpy.context.scene.mine = 1\nbpy.context.scene.render.nothing\n",
+    }
+    kept = KeptVersion((checker.version[0], checker.version[1]), checker)
+    use = files.pop("addon/use.py")
+    (file,) = Migrator(checker, [kept]).migrate({"addon/use.py": use}, beside=files)
+    assert [one.line for one in file.decisions] == [3]
+    assert not file.kept
+
+
 def test_members_are_no_older_than_their_class(checker: Checker) -> None:
     code = "import bpy\nbpy.context.scene.objects.link(bpy.context.object)\n"
     new = migrated(checker, code, (2, 79)).new
