@@ -20,8 +20,8 @@ from simworlds.settings import home_folder
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kb_check.migrate.chosen_versions import Versions
     from kb_check.migrate.plan import FileMigration
+    from kb_check.migrate.report import Migration
     from kb_check.migrate.trial import Trial
     from kb_check.project import Group, LoadedFile
     from kb_check.source import Source
@@ -57,7 +57,8 @@ def migrate(paths: tuple[Path, ...], **choices: Any) -> None:
     PATHS are files and folders; - reads standard input and prints what becomes of it.
 
     What is certain is changed; the rest is listed, with the reason, the place and the source. Without --write nothing
-    is changed, and the changes are shown. --run runs the code: use it only on code that you trust.
+    is changed, and the changes are shown. Notebooks stay as they are. --run runs the code: use it only on code that
+    you trust.
 
     Exit code 0: done. 1: a person must decide something. 2: something could not be read or written.
     """
@@ -82,42 +83,42 @@ def _is_stdin(paths: Sequence[Path]) -> bool:
 
 @dataclass
 class _Work:
-    """The files of one run: those that can be migrated, by name, and the outcome."""
+    """One run: the files that can be migrated, by name, the outcome, and what could not be read or written."""
 
+    migration: Migration
     loaded: dict[str, LoadedFile] = field(default_factory=dict[str, "LoadedFile"])
     sources: dict[str, Source] = field(default_factory=dict[str, "Source"])
-    results: list[FileMigration] = field(default_factory=list["FileMigration"])
     faults: list[str] = field(default_factory=list[str])
 
 
 def _migrate(paths: tuple[Path, ...], choices: dict[str, Any]) -> int:
-    from kb_check.migrate.chosen_versions import read_versions  # noqa: PLC0415
-    from kb_check.migrate.report import is_left, markdown  # noqa: PLC0415 - not for --help
+    from kb_check.migrate.chosen_versions import read_versions  # noqa: PLC0415 - not for --help
+    from kb_check.migrate.report import Migration, markdown  # noqa: PLC0415
 
     versions = read_versions(choices["target"], choices["source"], choices["keep"], home_folder())
     report = _report_place(paths[0]) if choices["write"] else None
-    work = _Work()
-    _migrate_groups(work, _groups(paths, work.faults), versions)
-    trials = _trials(work, paths, versions) if choices["run"] else []
-    if report and work.results:
-        _write(work, report, markdown(versions, work.results, trials))
-    _print(work, versions, trials, choices, is_filter=_is_stdin(paths))
+    work = _Work(Migration(versions))
+    _migrate_groups(work, _groups(paths, work.faults))
+    if choices["run"]:
+        work.migration.trials = _trials(work, paths)
+    if report and work.migration.files:
+        _write(work, report, markdown(work.migration))
+    _print(work, choices, is_filter=_is_stdin(paths))
     for fault in work.faults:
         click.echo(f"Error: {fault}", err=True)
     if work.faults:
         return _FAILED
-    differ = any(trial.after.error or trial.differences for trial in trials)
-    return _DECIDE if differ or any(map(is_left, work.results)) else 0
+    differ = any(trial.after.error or trial.differences for trial in work.migration.trials)
+    return _DECIDE if differ or not work.migration.is_done else 0
 
 
-def _print(
-    work: _Work, versions: Versions, trials: Sequence[Trial], choices: dict[str, Any], *, is_filter: bool
-) -> None:
+def _print(work: _Work, choices: dict[str, Any], *, is_filter: bool) -> None:
     """Prints the outcome; beside a diff, or code that another program reads, the words go to stderr."""
     from kb_check.migrate.report import as_json, decision_lines, summary  # noqa: PLC0415 - not for --help
 
+    migration = work.migration
     if choices["as_json"]:
-        told = json.dumps(as_json(versions, work.results, trials), indent=2)
+        told = json.dumps(as_json(migration), indent=2)
         click.echo(told.encode("utf-8", "replace").decode())
         return
     beside = choices["diff"] or is_filter
@@ -125,15 +126,15 @@ def _print(
         _print_code(work)
     elif beside or not choices["write"]:
         _print_diff(work)
-    for trial in trials:
+    for trial in migration.trials:
         click.echo(f"{trial.name}: {trial.verdict}", err=beside)
         for difference in trial.differences:
             click.echo(f"  {difference}", err=beside)
-    for line in decision_lines(work.results):
+    for line in decision_lines(migration):
         click.echo(line, err=beside)
-    if work.results:
-        click.echo(summary(work.results, versions), err=beside)
-    if not choices["write"] and not beside and any(result.changes for result in work.results):
+    if migration.files:
+        click.echo(summary(migration), err=beside)
+    if not choices["write"] and not beside and any(file.changes for file in migration.files):
         click.echo("Nothing was written: --write does.")
 
 
@@ -155,12 +156,13 @@ def _groups(paths: Sequence[Path], faults: list[str]) -> list[Group]:
     return load(found.groups, faults)
 
 
-def _migrate_groups(work: _Work, groups: Sequence[Group], versions: Versions) -> None:
+def _migrate_groups(work: _Work, groups: Sequence[Group]) -> None:
     from kb_check.checker import Checker  # noqa: PLC0415 - not for --help
     from kb_check.migrate.place import version_of  # noqa: PLC0415
     from kb_check.migrate.plan import Migrator  # noqa: PLC0415
     from kb_check.reading import read_source  # noqa: PLC0415
 
+    versions = work.migration.versions
     written_for = version_of(versions.source) if versions.source else None
     with ExitStack() as stack:
         checker = stack.enter_context(Checker(versions.base))
@@ -170,7 +172,7 @@ def _migrate_groups(work: _Work, groups: Sequence[Group], versions: Versions) ->
             wanted = {file.name for file in group if file.wanted}
             for name in sorted(wanted):
                 if name.endswith(NOTEBOOK):
-                    work.faults.append(f"{name} is a notebook: notebooks are not migrated.")
+                    work.migration.notebooks.append(name)
                 elif sources[name].fault:
                     work.faults.append(f"{name} cannot be read: {sources[name].fault}.")
             can = {name for name in wanted if not name.endswith(NOTEBOOK) and not sources[name].fault}
@@ -179,13 +181,13 @@ def _migrate_groups(work: _Work, groups: Sequence[Group], versions: Versions) ->
             work.sources.update({name: sources[name] for name in can})
             if can:
                 texts = {name: sources[name].text for name in sorted(can)}
-                work.results += migrator.migrate(texts, beside)
+                work.migration.files += migrator.migrate(texts, beside)
 
 
 def _print_diff(work: _Work) -> None:
     from kb_check.fixes import print_diff  # noqa: PLC0415 - not for --json
 
-    for result in work.results:
+    for result in work.migration.files:
         if (data := _bytes(work, result)) is not None:
             print_diff(result.name, work.loaded[result.name].data, data)
 
@@ -194,7 +196,7 @@ def _print_code(work: _Work) -> None:
     """Prints the text of standard input as it is now."""
     from simworlds.terminal.exact import print_exact  # noqa: PLC0415 - for standard input alone
 
-    for result in work.results:
+    for result in work.migration.files:
         if (data := _bytes(work, result)) is not None:
             print_exact(data, work.sources[result.name].encoding)
 
@@ -237,7 +239,7 @@ def _write(work: _Work, place: Path, report: str) -> None:
     from kb_check.migrate.report import joined  # noqa: PLC0415
     from simworlds.files import write_whole  # noqa: PLC0415
 
-    for result in work.results:
+    for result in work.migration.files:
         data = _bytes(work, result)
         if data is None or result.new == result.old:
             continue
@@ -253,11 +255,12 @@ def _write(work: _Work, place: Path, report: str) -> None:
         click.echo(f"Report: {place}", err=True)
 
 
-def _trials(work: _Work, paths: Sequence[Path], versions: Versions) -> list[Trial]:
+def _trials(work: _Work, paths: Sequence[Path]) -> list[Trial]:
     """Runs every path that is a script, or the folder of an add-on, as it was and as it is now."""
     from kb_check.migrate.trial import runtime_at_hand, try_out  # noqa: PLC0415 - only with --run
 
-    home, target, source = home_folder(), versions.target, versions.source
+    home, versions = home_folder(), work.migration.versions
+    target, source = versions.target, versions.source
     new = runtime_at_hand(target, home)
     if new is None:
         raise UserError(
@@ -283,7 +286,7 @@ def _runnable(paths: Sequence[Path]) -> list[Path]:
             found += sorted(
                 one for one in path.iterdir() if one.suffix == ".py" or (one / "__init__.py").exists()
             )
-        else:
+        elif path.exists() and path.suffix != NOTEBOOK:
             found.append(path)
     return found
 
@@ -298,7 +301,7 @@ def _laid_out(work: _Work, path: Path, folder: Path, *, new: bool) -> Path:
         shutil.copytree(path, copy, ignore=shutil.ignore_patterns("__pycache__", ".*"))
     else:
         shutil.copy(path, copy)
-    for result in work.results if new else ():
+    for result in work.migration.files if new else ():
         inside = Path(result.name).resolve()
         if inside.is_relative_to(path.resolve()) and (data := _bytes(work, result)) is not None:
             (copy / inside.relative_to(path.resolve()) if path.is_dir() else copy).write_bytes(data)

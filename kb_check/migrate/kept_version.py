@@ -37,14 +37,18 @@ class KeptVersion:
         return bool(change.targets) and all(self._has(path, target) for path in change.targets)
 
     def came_later(self, path: str, target: BaseReader) -> str:
-        """The first Blender that is known to have a symbol, where this one is known to be too old for it; else ""."""
+        """The first Blender that is known to have a symbol, where this one is known to be too old for it; else "".
+
+        Of what is in a class that came later, too, nothing is known: the class may have had another name before.
+        """
         gone = target.removed(path)
         first, lacked = (gone[0], "") if gone else target.arrival(path)
         if not first or version_of(first) <= self.version or (lacked and version_of(lacked) < self.version):
             return ""
-        if self.checker is not None:
-            return "" if _known(self.checker, path) else first
-        return "" if self._had(path) else first
+        if _known(self.checker, path) if self.checker is not None else self._had(path):
+            return ""
+        above = split_path(path)[0]
+        return "" if above and self.came_later(above, target) else first
 
     def _has(self, path: str, target: BaseReader) -> bool:
         if self.checker is not None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import walk
-from kb_build.symbols.paths import as_code
+from kb_build.symbols.paths import as_code, is_socket, last_name
 from kb_check.findings import Finding, Span
 from kb_check.migrate.change import Change, Decision, Done
 from kb_check.migrate.guards import can_be_guarded, guarded_edits, innermost, plain_edits
@@ -237,6 +237,8 @@ class Migrator:
         for row in place.script.resolutions():
             if row.guarded or not row.sure or not row.symbols or asked & _members(row.node):
                 continue
+            if any(is_socket(symbol) or last_name(symbol) != row.value for symbol in row.symbols):
+                continue  # found by a former name
             span = place.script.name_span(row.node)
             for kept in without:
                 firsts = [kept.came_later(symbol, reader) for symbol in row.symbols]

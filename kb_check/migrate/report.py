@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import asdict
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
+
+from kb_check.migrate.plan import FileMigration
+from kb_check.migrate.trial import Trial
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from kb_check.migrate.change import Done
     from kb_check.migrate.chosen_versions import Versions
-    from kb_check.migrate.plan import FileMigration
-    from kb_check.migrate.trial import Trial
 
 
 _TITLE = "# Migration to Blender "
@@ -31,18 +32,41 @@ def joined(report: str, earlier: str) -> str:
     return f"{report}\n{earlier}"
 
 
-def markdown(versions: Versions, files: Sequence[FileMigration], trials: Sequence[Trial]) -> str:
+@dataclass(slots=True)
+class Migration:
+    """What became of files and, where they were run, of the runs. ``notebooks`` are the names of those left as they
+    are.
+    """
+
+    versions: Versions
+    files: list[FileMigration] = field(default_factory=list[FileMigration])
+    notebooks: list[str] = field(default_factory=list[str])
+    trials: list[Trial] = field(default_factory=list[Trial])
+
+    @property
+    def is_done(self) -> bool:
+        """Whether nothing is left to a person."""
+        return not self.notebooks and not any(
+            file.kept or any(decision.severity == "error" for decision in file.decisions)
+            for file in self.files
+        )
+
+
+def markdown(migration: Migration) -> str:
     """The whole report: every change with its reason and source, and what a person must decide."""
+    versions = migration.versions
     kept = f" (and still {', '.join(versions.keep)})" if versions.keep else ""
-    lines = [f"{_TITLE}{versions.target}{kept}", "", summary(files, versions), ""]
-    if trials:
-        lines += ["## Runs", "", *_runs(trials), ""]
-    decided = [file for file in files if file.decisions or file.kept]
-    if decided:
+    lines = [f"{_TITLE}{versions.target}{kept}", "", summary(migration), ""]
+    if migration.trials:
+        lines += ["## Runs", "", *_runs(migration.trials), ""]
+    decided = [file for file in migration.files if file.decisions or file.kept]
+    if decided or migration.notebooks:
         lines += ["## To decide", ""]
         for file in decided:
             lines += [f"### {file.name}", "", *_decisions(file), ""]
-    changed = [file for file in files if file.changes]
+        for line in notebook_lines(migration):
+            lines += [f"- {_plain(line)}", ""]
+    changed = [file for file in migration.files if file.changes]
     if changed:
         lines += ["## Changed", "", "Lines are those of the file as it was.", ""]
         for file in changed:
@@ -72,45 +96,60 @@ def _row(change: Done) -> str:
     return f"| {' | '.join(cells)} |"
 
 
-def is_left(file: FileMigration) -> bool:
-    """Whether a person must decide something."""
-    return bool(file.kept) or any(decision.severity == "error" for decision in file.decisions)
-
-
-def summary(files: Sequence[FileMigration], versions: Versions) -> str:
+def summary(migration: Migration) -> str:
     """One sentence about all files."""
+    files, versions, notebooks = migration.files, migration.versions, migration.notebooks
     changes = sum(len(file.changes) for file in files)
     changed = sum(bool(file.changes) for file in files)
     kinds = Counter(decision.severity for file in files for decision in file.decisions)
     left = kinds["error"] + sum(len(file.kept) for file in files)
     parts = [f"{_many(changes, 'change')} in {_many(changed, 'file')}"]
-    parts.append(f"{_many(left, 'place')} to decide" if left else "nothing is left to decide")
+    if left:
+        parts.append(f"{_many(left, 'place')} to decide")
+    elif migration.is_done:
+        parts.append("nothing is left to decide")
     if kinds["warning"]:
         parts.append(_many(kinds["warning"], "warning"))
+    if notebooks:
+        parts.append(
+            f"{_many(len(notebooks), 'notebook')} left as {'it is' if len(notebooks) == 1 else 'they are'}"
+        )
     if versions.without_base:
         names = ", ".join(versions.without_base)
         parts.append(f"there is no base of {names}, so that not all that breaks there is known")
     return f"{'; '.join(parts)}."
 
 
-def decision_lines(files: Sequence[FileMigration]) -> Iterator[str]:
+def decision_lines(migration: Migration) -> Iterator[str]:
     """What a person must decide, a line each, with the place in the new text."""
-    for file in files:
+    for file in migration.files:
         for one in file.decisions:
             how = f" {one.how}" if one.how and one.how not in one.message else ""
             source = f" [{one.source}]" if one.source else ""
             yield f"{file.name}:{one.now}: {one.severity}[{one.rule}] {' '.join(one.message.split())}{how}{source}"
         for version, finding in file.kept:
             yield f"{file.name}:{finding.span.line}: in Blender {version}: {' '.join(finding.message.split())}"
+    yield from notebook_lines(migration)
 
 
-def as_json(versions: Versions, files: Sequence[FileMigration], trials: Sequence[Trial]) -> dict[str, Any]:
+def notebook_lines(migration: Migration) -> Iterator[str]:
+    """What to do about the notebooks, a line each."""
+    versions = migration.versions
+    kept = [version for version in versions.keep if version not in versions.without_base]
+    command = f"simworlds check --blender {','.join((*kept, versions.target))}"
+    for name in migration.notebooks:
+        yield f"{name} is a notebook: migrate leaves it as it is. `{command} {name}` says what breaks in it."
+
+
+def as_json(migration: Migration) -> dict[str, Any]:
     """The same for programs. Lines count from 1: ``line`` in the original, ``now`` in the new text."""
+    versions = migration.versions
     return {
         "format": 1,
         "to": versions.target,
         "keep": list(versions.keep),
         "without_base": list(versions.without_base),
+        "notebooks": migration.notebooks,
         "files": [
             {
                 "path": file.name,
@@ -122,7 +161,7 @@ def as_json(versions: Versions, files: Sequence[FileMigration], trials: Sequence
                     for version, one in file.kept
                 ],
             }
-            for file in files
+            for file in migration.files
         ],
         "runs": [
             {
@@ -134,7 +173,7 @@ def as_json(versions: Versions, files: Sequence[FileMigration], trials: Sequence
                 "after": {"blender": trial.after.version, "error": trial.after.error},
                 "differences": list(trial.differences),
             }
-            for trial in trials
+            for trial in migration.trials
         ],
     }
 

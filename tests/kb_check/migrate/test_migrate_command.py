@@ -87,9 +87,24 @@ def test_what_contradicts_itself_is_refused(command: Command, arguments: list[st
 
 def test_nothing_is_said_of_files_that_were_not_read(command: Command) -> None:
     (command.folder / "empty").mkdir()
-    done = command("none.py", "empty", "--write")
-    assert (done.code, done.out) == (2, "")
+    for option in ("--write", "--run"):
+        done = command("none.py", "empty", option)
+        assert (done.code, done.out) == (2, "")
     assert [one.name for one in command.folder.iterdir()] == ["empty"]
+
+
+def test_notebooks_stay_as_they_are_and_the_rest_is_migrated(command: Command) -> None:
+    cells = [{"cell_type": "code", "source": [OLD]}]
+    book = command.write("a/book.ipynb", json.dumps({"cells": cells}))
+    command.write("a/empty.ipynb", json.dumps({"cells": []}))
+    path = command.write("a/old.py", OLD)
+    before = book.read_bytes()
+    done = command("a", "--write")
+    assert done.code == 1
+    assert "a/book.ipynb is a notebook: migrate leaves it as it is." in done.out
+    assert "1 change in 1 file; 2 notebooks left as they are." in done.out
+    assert (book.read_bytes(), path.read_text()) == (before, NEW)
+    assert "a/book.ipynb is a notebook" in (command.folder / "a" / "MIGRATION.md").read_text()
 
 
 def test_a_report_of_somebody_else_is_not_replaced(command: Command) -> None:

@@ -85,6 +85,10 @@ def test_a_guard_for_one_version_does_not_hide_what_another_lacks(checker: Check
         ("if bpy.app.version >= (4, 0, 0): tree.interface", []),
         ("if hasattr(tree, 'interface'): tree.interface.new_socket('a')", []),
         ("tree.nodes", []),
+        ("tree.nodes.new('ShaderNodeMixShader').inputs['Factor']", []),
+        ("if bpy.data.brushes[0].gpencil_tool == 'DRAW': tree.nodes", []),
+        ("bpy.context.scene.sequence_editor.sequences_all[0].frame_start", []),
+        ("bpy.context.scene.sequence_editor.strips[0].frame_start", ["3.6", "4.2"]),
     ],
 )
 def test_names_that_a_kept_version_lacks_are_left_to_a_person(
