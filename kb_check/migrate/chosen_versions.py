@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -41,13 +41,15 @@ class Versions:
 
     def kept(self, stack: ExitStack) -> list[KeptVersion]:
         """Those to keep, with their bases open as long as ``stack`` is."""
-        bases = self.bases.values() if self.without_base else ()
-        histories = tuple(stack.enter_context(closing(BaseReader(base))) for base in bases)
+        histories: list[BaseReader] = []
+        for base in self.bases.values() if self.without_base else ():
+            with suppress(UserError):  # one that cannot be read tells nothing
+                histories.append(stack.enter_context(closing(BaseReader(base))))
         return [
             KeptVersion(
                 version_of(version),
                 stack.enter_context(Checker(self.bases[version])) if version in self.bases else None,
-                histories,
+                tuple(histories),
             )
             for version in self.keep
         ]

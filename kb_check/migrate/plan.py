@@ -240,6 +240,8 @@ class Migrator:
             if any(is_socket(symbol) or last_name(symbol) != row.value for symbol in row.symbols):
                 continue  # found by a former name
             span = place.script.name_span(row.node)
+            if place.script.is_doubted(span):
+                continue
             for kept in without:
                 firsts = [kept.came_later(symbol, reader) for symbol in row.symbols]
                 key = kept.name, span.line

@@ -14,9 +14,11 @@ _LINE_END = re.compile(r"(\r?\n)")
 def print_exact(data: bytes, encoding: str = "utf-8") -> None:
     """Prints bytes as they are; on a terminal their text, visible but for the ends of lines."""
     stream: Any = unguarded(sys.stdout)
+    if stream is None:  # a program without a terminal may have none
+        return
     if stream.isatty():
         parts = _LINE_END.split(data.decode(encoding, "replace"))
-        text = "".join(end if number % 2 else visible(end) for number, end in enumerate(parts))
+        text = "".join(part if number % 2 else visible(part) for number, part in enumerate(parts))
         stream.write(text.encode(stream.encoding, "replace").decode(stream.encoding))
     else:
         stream.flush()

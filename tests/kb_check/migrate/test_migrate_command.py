@@ -131,6 +131,7 @@ def test_a_later_report_stands_above_the_earlier_one(command: Command) -> None:
 
 def test_what_breaks_in_a_kept_version_is_left_to_decide(command: Command) -> None:
     command.write("new.py", "import bpy\nbpy.data.node_groups[0].interface.new_socket('a')\n")
+    (command.home / "kb" / "blender-4.9.sqlite").write_bytes(b"no base")
     done = command("new.py", "--keep", "3.6")
     assert done.code == 1
     assert (

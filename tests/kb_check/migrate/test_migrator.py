@@ -84,6 +84,7 @@ def test_a_guard_for_one_version_does_not_hide_what_another_lacks(checker: Check
         ("tree.interface", ["3.6"]),
         ("if bpy.app.version >= (4, 0, 0): tree.interface", []),
         ("if hasattr(tree, 'interface'): tree.interface.new_socket('a')", []),
+        ("if bpy.app.version_string > '4': tree.interface", []),
         ("tree.nodes", []),
         ("tree.nodes.new('ShaderNodeMixShader').inputs['Factor']", []),
         ("if bpy.data.brushes[0].gpencil_tool == 'DRAW': tree.nodes", []),
