@@ -33,14 +33,13 @@ if TYPE_CHECKING:
 
 _ROLES = ("manual", "guides")
 _OTHERS = {"pack": "kb_serve.packs.cli"}
-_INTERRUPTED = 130
 _PATH = click.Path(path_type=Path)
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
 
 
 def reports_errors(command: Callable[_P, _T]) -> Callable[_P, _T]:
-    """Turns errors into one message and an exit code: 2, or 130 after Ctrl-C."""
+    """Turns errors into one message and the exit code 2."""
 
     @functools.wraps(command)
     def run(*args: _P.args, **kwargs: _P.kwargs) -> _T:
@@ -49,9 +48,19 @@ def reports_errors(command: Callable[_P, _T]) -> Callable[_P, _T]:
         except UserError as error:
             click.echo(f"Error: {error}", err=True)
             sys.exit(2)
+
+    return run
+
+
+def replaces_files_whole(command: Callable[_P, _T]) -> Callable[_P, _T]:
+    """Has a user who interrupts the command told that the files which it would have replaced are the old ones."""
+
+    @functools.wraps(command)
+    def run(*args: _P.args, **kwargs: _P.kwargs) -> _T:
+        try:
+            return command(*args, **kwargs)
         except KeyboardInterrupt:
-            click.echo("Interrupted. The old files are unchanged.", err=True)
-            sys.exit(_INTERRUPTED)
+            raise KeyboardInterrupt("The old files are unchanged.") from None
 
     return run
 
@@ -111,6 +120,7 @@ def _roles(_context: click.Context, _parameter: click.Parameter, value: str | No
 @click.option("--fresh", is_flag=True, help="Download documentation again that was downloaded before.")
 @click.option("--out", type=_PATH, help="Write the base to this file.")
 @reports_errors
+@replaces_files_whole
 def build(version: str | None, **given: Any) -> None:
     """Build a Blender's knowledge base.
 
@@ -221,6 +231,7 @@ def verify(version: str | None, reference: Path | None, live: bool, as_json: boo
 @click.argument("version")
 @click.option("--output", type=_PATH, help="The file to write (default: blender-X.Y.tar.xz, here).")
 @reports_errors
+@replaces_files_whole
 def export_command(version: str, output: Path | None) -> None:
     """Pack a base into one file that others can fetch.
 
@@ -256,6 +267,7 @@ def export_command(version: str, output: Path | None) -> None:
     "it pins the file.",
 )
 @reports_errors
+@replaces_files_whole
 def fetch_command(version: str, source: str) -> None:
     """Fetch a ready base instead of building it.
 
@@ -325,6 +337,7 @@ def _ask(name: str, progress: Progress) -> Extract:
 @click.option("--out", type=_PATH, help="The file to write (default: the one that SimWorlds came with).")
 @click.option("--force", is_flag=True, help="Write even if the old file has more symbols.")
 @reports_errors
+@replaces_files_whole
 def history(
     versions: tuple[str, ...],
     blender_exes: tuple[Path, ...],
@@ -361,6 +374,7 @@ def history(
 @kb.command("merge-summaries")
 @click.argument("file", type=click.Path(path_type=Path, exists=True, dir_okay=False))
 @reports_errors
+@replaces_files_whole
 def merge_summaries(file: Path) -> None:
     """Merge a colleague's summaries into yours.
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from kb_check.project import Group
     from kb_check.report import Report
 
-_FOUND, _UNCHECKED, _INTERRUPTED = 1, 2, 130
+_FOUND, _UNCHECKED = 1, 2
 _PATIENCE_SECONDS = 2.0
 _STDIN = "-"
 _STDIN_NAME = "<stdin>"
@@ -66,9 +66,6 @@ def check(paths: tuple[Path, ...], form: str | None, **choices: Any) -> None:
     except UserError as error:
         click.echo(f"Error: {error}", err=True)
         code = _UNCHECKED
-    except KeyboardInterrupt:
-        click.echo("Interrupted.", err=True)
-        code = _INTERRUPTED
     sys.exit(code)
 
 

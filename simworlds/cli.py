@@ -2,12 +2,24 @@
 
 from __future__ import annotations
 
+import errno
+import os
+import sys
+from contextlib import suppress
+from difflib import get_close_matches
 from importlib import import_module
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from simworlds.terminal.streams import guard_streams
+from simworlds.terminal.streams import discard_output, guard_streams
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
+_FAILED, _INTERRUPTED = 2, 130
+_NO_ROOM = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
+_COMPLETION = "_SIMWORLDS_COMPLETE"  # a shell sets it when it asks for completions
 
 
 class _Command(NamedTuple):
@@ -47,17 +59,38 @@ _COMMANDS = {
 
 
 class _Lazy(click.Group):
-    """A group that loads only the command that is called, and guards what it prints."""
+    """A group that loads only the command that is called, and guards what it prints.
+
+    What may end any command is told here: Ctrl-C (what a KeyboardInterrupt says of files is told with it), a full disk.
+    """
 
     def main(self, *args: Any, **options: Any) -> Any:
         """See click."""
-        guard_streams()
-        return super().main(*args, **options)
+        if not os.environ.get(_COMPLETION):  # which is printed as bytes; nothing in it is anybody else's text
+            guard_streams()
+        try:
+            try:
+                return super().main(*args, complete_var=_COMPLETION, **options)
+            finally:
+                with suppress(BrokenPipeError):
+                    sys.stdout.flush()  # what print has kept until now
+        except OSError as error:
+            if error.errno not in _NO_ROOM:
+                raise
+            with suppress(OSError):
+                click.echo(
+                    f"Error: {error.filename or 'The output'} cannot be written: {error.strerror}.", err=True
+                )
+            discard_output()
+            sys.exit(_FAILED)
 
     def invoke(self, ctx: click.Context) -> Any:
         """See click."""
         try:
             return super().invoke(ctx)
+        except KeyboardInterrupt as interrupt:
+            click.echo(" ".join(["Interrupted.", *map(str, interrupt.args)]), err=True)
+            ctx.exit(_INTERRUPTED)
         except (ImportError, AttributeError) as error:  # of what a system lacks
             if _should_work(ctx.invoked_subcommand or ""):
                 raise
@@ -81,6 +114,26 @@ class _Lazy(click.Group):
         assert isinstance(command, click.Command)
         return command
 
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """See click. Names that are near to one that does not exist are told, as click does for options."""
+        unknown = self.get_command(ctx, args[0]) is None and not ctx.resilient_parsing
+        if unknown and (near := get_close_matches(args[0], _COMMANDS)):
+            ctx.fail(f"No such command {args[0]!r}. Did you mean {' or '.join(map(repr, near))}?")
+        return super().resolve_command(ctx, args)
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """Completes names without loading the commands."""
+        from click.shell_completion import CompletionItem  # noqa: PLC0415 - for a shell alone
+
+        named = [
+            CompletionItem(name, help=entry.help)
+            for name, entry in sorted(_COMMANDS.items())
+            if name.startswith(incomplete)
+        ]
+        return [*named, *click.Command.shell_complete(self, ctx, incomplete)]
+
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Lists them without loading any."""
         del ctx
@@ -100,6 +153,6 @@ class _NeedsBlender(click.ClickException):
 
 
 @click.group(cls=_Lazy, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(package_name="simworlds", prog_name="simworlds")
+@click.version_option(None, "-V", "--version", package_name="simworlds", prog_name="simworlds")
 def main() -> None:
     """From a sentence to a simulated scene: with a knowledge base, a live Blender and a verifier."""

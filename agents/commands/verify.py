@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from agents.protocol.report.summary import VerificationScope
     from agents.protocol.rule import Rule
 
-_UNCHECKED, _INTERRUPTED = 2, 130
+_UNCHECKED = 2
 _LOAD_SECONDS, _STAND_SECONDS = 300.0, 600.0
 _PATIENCE_SECONDS, _LINE_SECONDS = 2.0, 10.0
 _WIDTH = 132  # of a table that does not go to a terminal
@@ -71,18 +71,14 @@ def verify(scenes: tuple[Path, ...], form: str | None, rules: str | None, **choi
     _on_signals(_interrupt)
     logs: list[dict[str, Any]] = []
     code = 0
-    try:
-        for scene in scenes:
-            try:
-                done = _verify(scene, form, _rules(rules), choices, logs)
-            except _CannotCheckError as error:
-                _print_error(error, form, logs)
-                done = _UNCHECKED
-            code = max(code, done)
-        _print_logs(scenes, logs)
-    except KeyboardInterrupt:
-        click.echo("Interrupted.", err=True)
-        code = _INTERRUPTED
+    for scene in scenes:
+        try:
+            done = _verify(scene, form, _rules(rules), choices, logs)
+        except _CannotCheckError as error:
+            _print_error(error, form, logs)
+            done = _UNCHECKED
+        code = max(code, done)
+    _print_logs(scenes, logs)
     sys.exit(code)
 
 

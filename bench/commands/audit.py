@@ -47,9 +47,6 @@ def audit(blend: Path, scene: str, as_json: bool, **given: Any) -> None:
     except (BadSpec, BlenderError) as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(2)
-    except KeyboardInterrupt:
-        click.echo("Interrupted.", err=True)
-        sys.exit(130)
     click.echo(result.as_json() if as_json else "\n".join(_lines(result)))
     sys.exit(0 if result.not_scored is None else 2)
 

@@ -7,8 +7,10 @@ no error and no traceback can forget to.
 
 from __future__ import annotations
 
+import os
 import re
 import sys
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TextIO, cast
 
 if TYPE_CHECKING:
@@ -56,13 +58,26 @@ def guard_streams() -> None:
     sys.stdout, sys.stderr = _guarded(sys.stdout), _guarded(sys.stderr)
 
 
+def discard_output() -> None:
+    """Has what both streams still hold go nowhere: when the process ends, Python would try again to write it."""
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError):  # one without a descriptor holds nothing
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, stream.fileno())
+            os.close(nowhere)
+
+
 def unguarded(stream: TextIO) -> TextIO:
     """The stream itself, for a writer with escapes of its own, such as simworlds.terminal.console."""
     return stream.stream if isinstance(stream, GuardedStream) else stream
 
 
-def _guarded(stream: TextIO) -> TextIO:
-    # A program without a terminal may have no streams at all.
-    if isinstance(stream, GuardedStream) or cast("TextIO | None", stream) is None:
+def _guarded(stream: TextIO | None) -> TextIO:
+    if isinstance(stream, GuardedStream):
         return stream
-    return cast("TextIO", GuardedStream(stream))
+    # A program without a terminal may have no streams at all, and they may be closed.
+    return cast("TextIO", GuardedStream(stream or _nowhere()))
+
+
+def _nowhere() -> TextIO:
+    return open(os.open(os.devnull, os.O_WRONLY), "w", encoding="utf-8", closefd=False)
