@@ -6,8 +6,9 @@ import ast
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from kb_build.flow.analysis import MOST_CHARACTERS, Analysis, analyse, analyse_files
+from kb_build.flow.analysis import Analysis, analyse, analyse_files
 from kb_build.flow.api import Api
+from kb_build.flow.parse import too_long
 from kb_build.flow.symbols import MOST_KEPT, BaseSymbols
 from kb_check.ignores import UNUSED, Ignores
 from kb_check.known_names import KnownNames
@@ -61,7 +62,7 @@ class Checker:
 
     def read(self, code: str) -> Read:
         """Reads a script. Nothing is imported or run; bad input of every kind ends in a finding."""
-        if len(code) > MOST_CHARACTERS:
+        if too_long(code):
             return Read(code, Analysis(None, {}, {}, complete=False))
         analysis = analyse(code, self.api, self.version)
         if analysis.tree is not None:

@@ -8,7 +8,7 @@ import time
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TextIO
 
 import click
 
@@ -17,35 +17,60 @@ from simworlds.operating_system import SYSTEM
 from simworlds.settings import cache_folder, home_folder
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator
+    from collections.abc import Callable, Generator, Sequence
 
     from kb_check.cache import ResultCache
     from kb_check.configuration import Configuration
-    from kb_check.project import Group
+    from kb_check.inputs import Inputs
     from kb_check.report import Report
+    from kb_check.run import Run
 
 _FOUND, _UNCHECKED = 1, 2
 _PATIENCE_SECONDS = 2.0
-_STDIN = "-"
-_STDIN_NAME = "<stdin>"
+_STDIN = Path("-")
+_FORMS = ("json", "sarif", "github", "diff")
+_OF_ONE_VERSION = ("fix", "diff", "github")
+
+
+class _PathType(click.Path):
+    """A path that says something: an empty one, of a variable that is not set, would be the current folder."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """See click."""
+        if not str(value):
+            self.fail("it is empty. Give a file or a folder; the current one is .", param, ctx)
+        return super().convert(value, param, ctx)
 
 
 @click.command()
-@click.argument("paths", nargs=-1, type=click.Path(path_type=Path, allow_dash=True))
+@click.argument("paths", nargs=-1, type=_PathType(path_type=Path, allow_dash=True))
 @click.option(
-    "--blender", metavar="VERSIONS", help="Blender versions, as 5.1 or 4.5,5.1. Default: the one in use."
+    "--blender",
+    metavar="VERSIONS",
+    multiple=True,
+    help="Blender versions, as 5.1 or 4.5,5.1. Default: the one in use.",
 )
-@click.option("--rules", metavar="LIST", help="The rules to check, separated by commas. Default: all.")
-@click.option("--json", "form", flag_value="json", help="Print JSON.")
-@click.option("--sarif", "form", flag_value="sarif", help="Print SARIF 2.1.0.")
-@click.option("--github", "form", flag_value="github", help="Print annotations for GitHub Actions.")
-@click.option("--fix", is_flag=True, help="Apply the fixes that are sure.")
+@click.option(
+    "--rules", metavar="LIST", multiple=True, help="The rules to check, separated by commas. Default: all."
+)
+@click.option("--json", is_flag=True, help="Print JSON.")
+@click.option("--sarif", is_flag=True, help="Print SARIF 2.1.0.")
+@click.option("--github", is_flag=True, help="Print annotations for GitHub Actions.")
+@click.option("--fix", is_flag=True, help="Apply the fixes that are sure. With -: print the mended text.")
 @click.option("--diff", is_flag=True, help="Print what --fix would change, and change nothing.")
 @click.option("--unsafe-fixes", is_flag=True, help="With --fix and --diff: the other fixes, too.")
+@click.option(
+    "--stdin-filename",
+    metavar="FILE",
+    type=_PathType(path_type=Path),
+    help="The file that standard input is checked as: what its package registers is known.",
+)
 @click.option("--no-gitignore", is_flag=True, help="In folders: check what git leaves out, too.")
 @click.option("--jobs", type=click.IntRange(1, 256), help="Number of processes. Default: one a core.")
 @click.option("--no-cache", is_flag=True, help="Check everything again.")
-def check(paths: tuple[Path, ...], form: str | None, **choices: Any) -> None:
+@click.option("--list-rules", is_flag=True, help="List the rules, and check nothing.")
+@click.option("--explain", metavar="RULE", help="Print what a rule finds and why, and check nothing.")
+def check(paths: tuple[Path, ...], **choices: Any) -> None:
     """Check Python code against the API of a Blender, without running it.
 
     PATHS are files and folders (default: this folder); - reads standard input. Options that hold for a project stand
@@ -53,15 +78,23 @@ def check(paths: tuple[Path, ...], form: str | None, **choices: Any) -> None:
 
     For several versions a table says what breaks where, and which of them the code runs in.
 
-    Exit code 0: nothing found. 1: errors were found. 2: something could not be checked.
+    Exit code 0: no errors were found. 1: errors were found. 2: something could not be checked.
     """
-    if choices["unsafe_fixes"] and not (choices["fix"] or choices["diff"]):
+    form = _form(choices)
+    if choices["unsafe_fixes"] and not (choices["fix"] or form == "diff"):
         raise click.UsageError("--unsafe-fixes goes with --fix or --diff.")
-    if choices["fix"] and choices["diff"]:
-        raise click.UsageError("--fix and --diff exclude each other.")
+    if choices["stdin_filename"]:
+        paths = paths or (_STDIN,)
+        if _STDIN not in paths:
+            raise click.UsageError("--stdin-filename goes with -, which reads standard input.")
+    if choices["fix"] and _STDIN in paths and len(paths) > 1:
+        raise click.UsageError("--fix - prints one mended text: give no other path.")
     # The process ends soon: collecting garbage would only take time.
     gc.disable()
     try:
+        if choices["list_rules"] or choices["explain"] is not None:
+            _tell_rules(choices["explain"])
+            return
         code = _check(paths or (Path(),), form, choices)
     except UserError as error:
         click.echo(f"Error: {error}", err=True)
@@ -69,23 +102,35 @@ def check(paths: tuple[Path, ...], form: str | None, **choices: Any) -> None:
     sys.exit(code)
 
 
+def _form(choices: dict[str, Any]) -> str | None:
+    """In which form the findings are printed: None for text."""
+    chosen = [form for form in _FORMS if choices[form]]
+    excluding = [*chosen, *(["fix"] if choices["fix"] and "diff" in chosen else [])]
+    if len(excluding) > 1:
+        raise click.UsageError(f"{' and '.join(f'--{name}' for name in excluding)} exclude each other.")
+    return chosen[0] if chosen else None
+
+
+def _tell_rules(name: str | None) -> None:
+    """Prints what there is to know of one rule, or the list of all."""
+    from kb_check.rule_texts import rule_lines, rule_page  # noqa: PLC0415 - seldom
+    from simworlds.terminal.markdown import print_markdown  # noqa: PLC0415
+
+    if name is None:
+        click.echo("\n".join(rule_lines()))
+    else:
+        print_markdown(rule_page(name))
+
+
 def _check(paths: tuple[Path, ...], form: str | None, choices: dict[str, Any]) -> int:
-    configuration = _configuration(paths, choices)
-    written = choices["blender"].split(",") if choices["blender"] else configuration.blender
-    versions = list(dict.fromkeys(version.strip() for version in written if version.strip()))
-    several = len(versions) > 1
-    if several and (choices["fix"] or choices["diff"] or form == "github"):
-        names = ", ".join(versions)
-        raise click.UsageError(
-            f"For several versions ({names}) there are only the table, --json and --sarif."
-        )
-    base = None if several else _base(versions[0] if versions else None)
-    faults: list[str] = []
-    run = _Inputs(configuration, _groups(paths, configuration, faults, choices), faults, choices)
+    configuration = _configuration(choices["stdin_filename"] or paths[0], choices)
+    versions = _versions(configuration, choices)
+    base = _base(versions[0] if versions else None) if len(versions) < 2 else None
+    run = _Checking(configuration, _inputs(paths, configuration, choices), form, choices)
     with _cache(choices) as cache:
-        reports = (
-            _one_version(run, base, cache, form) if base else _several_versions(run, versions, cache, form)
-        )
+        reports = _one_version(run, base, cache) if base else _several_versions(run, versions, cache)
+    for warning in run.inputs.left_out:
+        click.echo(f"Warning: {warning}", err=True)
     told = dict.fromkeys(fault for report in reports for fault in report.faults)
     for fault in told:
         click.echo(f"Error: {fault}", err=True)
@@ -95,13 +140,31 @@ def _check(paths: tuple[Path, ...], form: str | None, choices: dict[str, Any]) -
     return _FOUND if fails else 0
 
 
+def _versions(configuration: Configuration, choices: dict[str, Any]) -> tuple[str, ...]:
+    """The Blenders that are asked for; none for the one in use."""
+    from kb_check.configuration import versions_in  # noqa: PLC0415 - not for --help
+
+    given = choices["blender"]
+    versions = versions_in(given) if given else configuration.blender
+    if given and not versions:
+        raise click.UsageError("--blender names no version: write it as 5.1 or 4.5,5.1.")
+    wanted = [f"--{name}" for name in _OF_ONE_VERSION if choices[name]]
+    if len(versions) > 1 and wanted:
+        where = "--blender" if given else f"{configuration.file}"
+        raise click.UsageError(
+            f"{wanted[0]} is for one version, and {where} names several ({', '.join(versions)}). "
+            f"Give one, as --blender {versions[-1]}."
+        )
+    return versions
+
+
 @dataclass(frozen=True, slots=True)
-class _Inputs:
-    """What is checked, and how; ``faults`` are about what could not be read."""
+class _Checking:
+    """What is checked, and how."""
 
     configuration: Configuration
-    groups: list[Group]
-    faults: list[str]
+    inputs: Inputs
+    form: str | None
     choices: dict[str, Any]
 
     @property
@@ -109,7 +172,7 @@ class _Inputs:
         return self.choices["jobs"] or SYSTEM.cores()
 
 
-def _one_version(inputs: _Inputs, base: Path, cache: ResultCache | None, form: str | None) -> list[Report]:
+def _one_version(checking: _Checking, base: Path, cache: ResultCache | None) -> list[Report]:
     """Checks for one Blender, with fixes, and prints the report."""
     from kb_check.project import Project  # noqa: PLC0415 - not for --help
     from kb_check.run import Run  # noqa: PLC0415
@@ -117,45 +180,58 @@ def _one_version(inputs: _Inputs, base: Path, cache: ResultCache | None, form: s
 
     with closing(BaseReader(base)) as reader:
         meta = reader.meta
-    project = Project(base, meta["fingerprint"], cache, inputs.jobs)
-    run = Run(project, inputs.configuration, inputs.groups, inputs.faults)
-    unsafe = inputs.choices["unsafe_fixes"]
+    inputs, choices = checking.inputs, checking.choices
+    project = Project(base, meta["fingerprint"], cache, checking.jobs)
+    run = Run(project, checking.configuration, inputs.groups, inputs.faults)
+    unsafe = choices["unsafe_fixes"]
+    is_filter = choices["fix"] and inputs.typed is not None
     with _progress() as progress:
-        if inputs.choices["fix"]:
+        if choices["fix"]:
             run.fix(unsafe=unsafe)
-            run.write()
+            if not is_filter:
+                run.write()
         report = run.check(meta["minor"], progress)
-        if inputs.choices["diff"]:
+        if choices["diff"]:
             run.fix(unsafe=unsafe)
-    if inputs.choices["diff"]:
+    if choices["diff"]:
         run.print_diff()
+    elif is_filter:
+        _print_mended(run, inputs.typed or b"")
+        _print(report, checking.form, sys.stderr)
     else:
-        _print(report, form)
+        _print(report, checking.form, sys.stdout)
     return [report]
 
 
+def _print_mended(run: Run, typed: bytes) -> None:
+    """Prints what fixes have made of standard input, which is all that was to be checked, if it was."""
+    from simworlds.terminal.exact import print_exact  # noqa: PLC0415 - seldom
+
+    print_exact(next((file.data for group in run.groups for file in group if file.wanted), typed))
+
+
 def _several_versions(
-    inputs: _Inputs, versions: list[str], cache: ResultCache | None, form: str | None
+    checking: _Checking, versions: Sequence[str], cache: ResultCache | None
 ) -> list[Report]:
     """Checks for several Blenders, and prints what breaks where."""
     from kb_check.versions import check_versions  # noqa: PLC0415 - for several versions alone
 
     with _progress() as progress:
         report = check_versions(
-            inputs.groups,
+            checking.inputs.groups,
             versions,
             home_folder(),
-            configuration=inputs.configuration,
-            faults=inputs.faults,
+            configuration=checking.configuration,
+            faults=checking.inputs.faults,
             cache=cache,
-            jobs=inputs.jobs,
+            jobs=checking.jobs,
             progress=progress,
         )
-    if form == "json":
+    if checking.form == "json":
         from kb_check.formats.json_format import dump  # noqa: PLC0415 - one of them is used
 
         click.echo(dump(report.as_json()))
-    elif form == "sarif":
+    elif checking.form == "sarif":
         from kb_check.formats.sarif import as_sarif  # noqa: PLC0415
 
         click.echo(as_sarif(*report.reports))
@@ -165,16 +241,15 @@ def _several_versions(
     return list(report.reports)
 
 
-def _configuration(paths: tuple[Path, ...], choices: dict[str, Any]) -> Configuration:
+def _configuration(first: Path, choices: dict[str, Any]) -> Configuration:
     """What the project of the first path wants, and what the options say."""
     from dataclasses import replace  # noqa: PLC0415 - not for --help
 
     from kb_check.configuration import known_rules, read_configuration  # noqa: PLC0415
 
-    first = paths[0]
     configuration = read_configuration(first if first.is_dir() else first.parent)
     if choices["rules"]:
-        names = [name.strip() for name in choices["rules"].split(",")]
+        names = [name.strip() for text in choices["rules"] for name in text.split(",")]
         configuration = replace(configuration, rules=known_rules(names, "--rules"))
     return configuration
 
@@ -186,29 +261,11 @@ def _base(version: str | None) -> Path:
         return bases.file()
 
 
-def _groups(
-    paths: tuple[Path, ...], configuration: Configuration, faults: list[str], choices: dict[str, Any]
-) -> list[Group]:
-    """The files, read; standard input is one."""
-    from kb_check.files import find_files  # noqa: PLC0415 - not for --help
-    from kb_check.project import LoadedFile  # noqa: PLC0415
-    from kb_check.run import load  # noqa: PLC0415
-    from kb_check.source import MOST_BYTES  # noqa: PLC0415
+def _inputs(paths: tuple[Path, ...], configuration: Configuration, choices: dict[str, Any]) -> Inputs:
+    from kb_check.inputs import read_inputs  # noqa: PLC0415 - not for --help
 
-    named = [path for path in paths if str(path) != _STDIN]
     gitignore = configuration.gitignore and not choices["no_gitignore"]
-    found = find_files(named, configuration.exclude, configuration.folder, gitignore=gitignore)
-    faults += found.faults
-    groups = load(found.groups, faults)
-    if len(named) < len(paths):
-        if choices["fix"]:
-            raise click.UsageError("--fix cannot change standard input. Use --diff.")
-        data = sys.stdin.buffer.read(MOST_BYTES + 1)
-        if len(data) > MOST_BYTES:
-            faults.append(f"Standard input is larger than {MOST_BYTES >> 20} MiB.")
-        else:
-            groups.append((LoadedFile(_STDIN_NAME, data),))
-    return groups
+    return read_inputs(paths, configuration, choices["stdin_filename"], gitignore=gitignore)
 
 
 @contextmanager
@@ -243,35 +300,35 @@ def _progress() -> Generator[Callable[[int, int], None]]:
         yield progress
 
 
-def _print(report: Report, form: str | None) -> None:
+def _print(report: Report, form: str | None, stream: TextIO) -> None:
     if form == "json":
         from kb_check.formats.json_format import as_json  # noqa: PLC0415 - one of them is used
 
-        click.echo(as_json(report))
+        click.echo(as_json(report), stream)
     elif form == "sarif":
         from kb_check.formats.sarif import as_sarif  # noqa: PLC0415
 
-        click.echo(as_sarif(report))
+        click.echo(as_sarif(report), stream)
     elif form == "github":
         from kb_check.formats.github import github_lines  # noqa: PLC0415
 
         for line in github_lines(report):
-            click.echo(line)
+            click.echo(line, stream)
     else:
-        _print_text(report)
+        _print_text(report, stream)
 
 
-def _print_text(report: Report) -> None:
+def _print_text(report: Report, stream: TextIO) -> None:
     from kb_check.formats.text import text_lines  # noqa: PLC0415 - not for --json
 
-    if not sys.stdout.isatty():
+    if not stream.isatty():
         for line in text_lines(report):
-            click.echo("".join(text for text, _ in line))
+            click.echo("".join(text for text, _ in line), stream)
         return
     from rich.text import Text  # noqa: PLC0415 - only for a terminal
 
     from simworlds.terminal.console import Console  # noqa: PLC0415
 
-    console = Console(sys.stdout)
+    console = Console(stream)
     for line in text_lines(report):
         console.print(Text.assemble(*line), soft_wrap=True)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
 _FILE = "pyproject.toml"
+_TABLE = "check"  # of tool.simworlds
 _SEVERITIES: tuple[Severity, ...] = get_args(Severity)  # the worst first
 
 
@@ -40,6 +41,11 @@ class Configuration:
     per_file_ignores: tuple[tuple[str, tuple[str, ...]], ...] = ()
     severity: tuple[tuple[str, Severity], ...] = ()
     fail_on: Severity = "error"
+
+    @property
+    def file(self) -> Path:
+        """The file that says so, where anything is said."""
+        return self.folder / _FILE
 
     def kept(self, path: Path, findings: Iterable[Finding]) -> list[Finding]:
         """The findings of a file that are wanted, with the severity that they are given."""
@@ -70,12 +76,19 @@ def read_configuration(start: Path) -> Configuration:
             continue
         except (OSError, ValueError, RecursionError) as error:
             raise BadConfiguration(f"{file} cannot be read: {error}") from error
-        table: Any = document.get("tool", {})
-        for name in ("simworlds", "check"):
-            table = cast("dict[str, Any]", table).get(name) if isinstance(table, dict) else None
+        tables = _entry(_entry(document, "tool"), "simworlds")
+        if isinstance(tables, dict) and (unknown := tables.keys() - {_TABLE}):
+            raise BadConfiguration(f"{file}: tool.simworlds.{min(unknown)} is unknown. There is: {_TABLE}.")
+        table = _entry(tables, _TABLE)
         if table is not None:
             return _configuration(table, here, str(file))
     return Configuration()
+
+
+def versions_in(texts: Iterable[str]) -> tuple[str, ...]:
+    """The versions in texts such as ``4.5,5.1``, each once."""
+    names = (name.strip() for text in texts for name in text.split(","))
+    return tuple(dict.fromkeys(name for name in names if name))
 
 
 def known_rules(names: Iterable[str], where: str) -> tuple[str, ...]:
@@ -87,6 +100,10 @@ def known_rules(names: Iterable[str], where: str) -> tuple[str, ...]:
                 f"{where}: there is no rule {name!r}. There are: {', '.join(all_rules())}."
             )
     return names
+
+
+def _entry(table: Any, name: str) -> Any:
+    return cast("dict[str, Any]", table).get(name) if isinstance(table, dict) else None
 
 
 def _configuration(table: Any, folder: Path, file: str) -> Configuration:
@@ -104,7 +121,7 @@ def _configuration(table: Any, folder: Path, file: str) -> Configuration:
 def _texts(value: Any, where: str) -> tuple[str, ...]:
     if isinstance(value, list) and all(isinstance(entry, str) for entry in cast("list[Any]", value)):
         return tuple(cast("list[str]", value))
-    raise BadConfiguration(f"{where} must be a list of texts.")
+    raise BadConfiguration(f"{where} must be a list of strings.")
 
 
 def _truth(value: Any, where: str) -> bool:
@@ -114,7 +131,10 @@ def _truth(value: Any, where: str) -> bool:
 
 
 def _versions(value: Any, where: str) -> tuple[str, ...]:
-    return tuple(value.split(",")) if isinstance(value, str) else _texts(value, where)
+    texts: list[Any] = cast("list[Any]", value) if isinstance(value, list) else [value]
+    if all(isinstance(text, str) and versions_in([text]) for text in texts):
+        return versions_in(texts)
+    raise BadConfiguration(f'{where} must be a version in quotes, as "5.1", or a list of such versions.')
 
 
 def _rules(value: Any, where: str) -> tuple[str, ...]:

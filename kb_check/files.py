@@ -15,7 +15,7 @@ from kb_check.source import NOTEBOOK
 from simworlds.errors import UserError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 SUFFIXES = (".py", ".pyw", NOTEBOOK)
 _PASSED_OVER = frozenset(("__pycache__", "node_modules", "site-packages"))
@@ -41,41 +41,63 @@ class FileGroup:
 
 @dataclass(slots=True)
 class FoundFiles:
-    """The groups of files below some paths, and a sentence for each path that has nothing to check."""
+    """The groups of files below some paths, a sentence for each path that has nothing to check, and the paths of
+    which the patterns leave nothing.
+    """
 
     groups: list[FileGroup] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
+    excluded: list[Path] = field(default_factory=list)
 
 
 def find_files(
-    paths: Iterable[Path], exclude: Sequence[str] = (), top: Path | None = None, *, gitignore: bool = True
+    paths: Iterable[Path],
+    exclude: Sequence[str] = (),
+    top: Path | None = None,
+    *,
+    gitignore: bool = True,
+    unsaved: Collection[Path] = (),
 ) -> FoundFiles:
     """The Python files and notebooks at and below ``paths``, by package.
 
     ``exclude`` are patterns of names or of paths below ``top``. ``gitignore``: what git leaves out is left out. Links
     are followed where they are named, not where they are found; so are hidden files, environments and what git leaves
-    out. Raises UserError for far too many files.
+    out. Pipes that are named are files of no package. ``unsaved`` are paths whose content is given: they need not be
+    there. Raises UserError for far too many files.
     """
     excluded = _Excluded(exclude, (top or Path()).absolute())
     found = FoundFiles()
     wanted: dict[Path, Path] = {}  # as it is → as it is shown
     for path in paths:
-        if path.is_dir():
-            below = list(_below(path, excluded, GitIgnore(path) if gitignore else None))
-            if not below:
-                found.faults.append(f"There are no Python files in {path}.")
-        elif path.is_file():
-            below = [] if excluded.has(path) else [path]
-        else:
-            below = []
+        ignored = GitIgnore(path) if gitignore and path.is_dir() else None
+        below: list[Path] = []
+        if not path.exists() and path not in unsaved:
             found.faults.append(f"There is no file or folder {path}.")
+        elif excluded.has(path):
+            found.excluded.append(path)
+        elif path in unsaved or path.is_file():
+            below = [path]
+        elif path.is_dir():
+            below = list(_below(path, excluded, ignored))
+            if below:
+                pass
+            elif any(_below(path, _Excluded((), path), ignored)):
+                found.excluded.append(path)
+            elif any(_below(path, excluded)):
+                found.faults.append(
+                    f"Git leaves out all Python files in {path}. Those that are named are checked all the same."
+                )
+            else:
+                found.faults.append(f"There are no Python files in {path}.")
+        else:  # a pipe can be read only once, so that nobody may look into it for what it uses
+            found.groups.append(FileGroup((CodeFile(path),)))
         for file in below:
             wanted.setdefault(Path(os.path.realpath(file)), file)
             if len(wanted) > _MOST_FILES:
                 raise UserError(
                     f"There are more than {_MOST_FILES:,} Python files. Check a part of them at a time."
                 )
-    found.groups = list(_grouped(wanted, excluded))
+    found.groups += _grouped(wanted, excluded)
     return found
 
 

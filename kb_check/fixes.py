@@ -60,6 +60,8 @@ def apply_fixes(source: Source, findings: Iterable[Finding], *, unsafe: bool = F
 def write_fixed(path: Path, before: bytes, after: bytes) -> None:
     """Writes a file whole, with its permissions. Raises OSError, also when it is not any more what it was."""
     real = path.resolve()
+    if not real.is_file():
+        raise OSError("it is not a file")
     if real.read_bytes() != before:
         raise OSError(f"{path} was changed meanwhile")
     with staged_file(real) as part:

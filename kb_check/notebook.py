@@ -22,10 +22,10 @@ def read_notebook(data: bytes) -> Source:
     try:
         notebook: Any = json.loads(data.decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
-        return Source("", fault=f"this is not a notebook: {error}")
+        return Source("", fault=f"it is not a notebook: {error}")
     cells: Any = cast("dict[str, Any]", notebook).get("cells") if isinstance(notebook, dict) else None
     if not isinstance(cells, list):
-        return Source("", fault="this is not a notebook of the format 4: it has no list of cells")
+        return Source("", fault="it is not a notebook of the format 4: it has no list of cells")
     lines: list[str] = []
     places: list[Cell] = []
     for number, code in _code_cells(cast("list[Any]", cells)):

@@ -160,12 +160,15 @@ def check_group(checker: Checker, group: Group) -> list[list[Finding]]:
     reads = [found[paths[file.name]] for file in group]
     package = checker.package(reads)
     return [
-        [*_fault(source), *checker.check(read, package)] if file.wanted else []
+        _with_fault(source, checker.check(read, package)) if file.wanted else []
         for file, source, read in zip(group, sources, reads, strict=True)
     ]
 
 
-def _fault(source: Source) -> Iterator[Finding]:
-    if source.fault:
-        span = Span(source.fault_line, 0, source.fault_line, 0)
-        yield Finding("syntax-error", "error", span, f"Python cannot read this: {source.fault}.")
+def _with_fault(source: Source, findings: list[Finding]) -> list[Finding]:
+    """The findings, with the source's fault in the place of what its text is no Python for."""
+    if not source.fault:
+        return findings
+    span = Span(source.fault_line, 0, source.fault_line, 0)
+    fault = Finding("syntax-error", "error", span, f"Python cannot read this: {source.fault}.")
+    return [fault, *(finding for finding in findings if finding.rule != fault.rule)]

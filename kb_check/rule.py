@@ -30,7 +30,9 @@ class Rule:
     @property
     def page(self) -> str:
         """What there is to know about it, as Markdown."""
-        return inspect.getdoc(inspect.getmodule(self.check)) or ""
+        blocks = (inspect.getdoc(inspect.getmodule(self.check)) or "").split("```")
+        blocks[::2] = [block.replace("``", "`") for block in blocks[::2]]  # not those that fence code
+        return "```".join(blocks)
 
 
 @cache

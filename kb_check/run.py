@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from kb_build.flow.parse import too_long
 from kb_check.fixes import apply_fixes, print_diff, write_fixed
 from kb_check.project import LoadedFile
 from kb_check.reading import read_source
@@ -13,7 +15,7 @@ from kb_check.report import FileReport, Report
 from kb_check.source import MOST_BYTES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator, Mapping
 
     from kb_check.configuration import Configuration
     from kb_check.files import FileGroup
@@ -49,9 +51,14 @@ class Run:
                 report.faults.append(f"{names} could not be checked: {result.failure}.")
                 continue
             for file, findings in zip(group, result.findings, strict=True):
-                if file.wanted:
-                    kept = self.configuration.kept(Path(file.name), findings)
-                    report.files.append(FileReport(file.name, read_source(file.data, file.name), kept))
+                if not file.wanted:
+                    continue
+                source = read_source(file.data, file.name)
+                if why_not := too_long(source.text):
+                    report.faults.append(f"{file.name} was not checked: {why_not}.")
+                    continue
+                kept = self.configuration.kept(Path(file.name), findings)
+                report.files.append(FileReport(file.name, source, kept))
         report.files.sort(key=lambda file: file.name)
         return report
 
@@ -104,15 +111,21 @@ class Run:
         return replace(file, data=data)
 
 
-def load(groups: Iterable[FileGroup], faults: list[str]) -> list[Group]:
-    """Reads the files; one that is gone, may not be read or is far too large is a fault if it is wanted."""
+def load(
+    groups: Iterable[FileGroup], faults: list[str], given: Mapping[Path, bytes] = MappingProxyType({})
+) -> list[Group]:
+    """Reads the files; one that is gone, may not be read or is far too large is a fault if it is wanted. ``given``
+    has the content of files that are not to be read.
+    """
     loaded: list[Group] = []
     for group in groups:
         files: list[LoadedFile] = []
         for file in group.files:
             try:
-                with file.path.open("rb") as stream:
-                    data = stream.read(MOST_BYTES + 1)
+                data = given.get(file.path)
+                if data is None:
+                    with file.path.open("rb") as stream:
+                        data = stream.read(MOST_BYTES + 1)
                 if len(data) > MOST_BYTES:
                     raise OSError(f"it is larger than {MOST_BYTES >> 20} MiB")
             except OSError as error:

@@ -34,6 +34,12 @@ class FoundIn:
     finding: Finding
     versions: tuple[str, ...]
 
+    @property
+    def message(self) -> str:
+        """The finding's message; where it holds for several Blenders, it names none of them as its own."""
+        message = self.finding.message
+        return message if len(self.versions) == 1 else message.replace(f" in Blender {self.versions[0]}", "")
+
 
 @dataclass(frozen=True, slots=True)
 class VersionsReport:
@@ -88,23 +94,27 @@ class VersionsReport:
         return dict(found)
 
     def runs_in(self) -> list[str]:
-        """The versions in which nothing is wrong."""
-        return [version for version, count in self.totals().items() if not count]
+        """The versions for which all files were checked, and nothing is wrong in them."""
+        counts = self.errors().values()
+        return [
+            version for version in self.versions if counts and all(row.get(version) == 0 for row in counts)
+        ]
 
     def verdict(self) -> str:
-        """One sentence: the versions that it runs in, and where it breaks in the others."""
+        """One sentence: the versions that it runs in, and where it breaks in the others. Nothing is said of those
+        that some file could not be checked for.
+        """
         good = self.runs_in()
         if len(good) == len(self.versions):
             return f"Nothing found that breaks in {_listed(good)}."
-        parts = [
-            f"Nothing found that breaks in {_ranges(good, self.versions)}" if good else "Breaks everywhere"
-        ]
+        parts = [f"Nothing found that breaks in {_ranges(good, self.versions)}"] if good else []
         parts += [
             f"breaks in {version}: {count} error{'' if count == 1 else 's'}, first at {self._first(version)}"
             for version, count in self.totals().items()
             if count
         ]
-        return "; ".join(parts) + "."
+        sentence = "; ".join(parts)
+        return f"{sentence[:1].upper()}{sentence[1:]}." if parts else ""
 
     def _first(self, version: str) -> str:
         row = next(row for row in self.breaks() if version in row.versions)
@@ -136,13 +146,14 @@ class VersionsReport:
         clean = len(errors) - len(affected)
         if affected and clean:
             yield f"{clean:,} more file{'' if clean == 1 else 's'} without errors."
-        yield self.verdict()
+        if verdict := self.verdict():
+            yield verdict
 
     def _line(self, row: FoundIn) -> str:
         span = row.finding.span
         where = _ranges(row.versions, self.versions)
         place = f"{row.path}:{span.line}:{span.column + 1}"
-        return f"{place}: in {where}: [{row.finding.rule}] {' '.join(row.finding.message.split())}"
+        return f"{place}: in {where}: [{row.finding.rule}] {' '.join(row.message.split())}"
 
     def as_json(self) -> dict[str, Any]:
         """The same for programs. Lines and columns count from 1."""
@@ -194,7 +205,7 @@ def _as_json(row: FoundIn) -> dict[str, Any]:
         "rule": row.finding.rule,
         "symbol": row.finding.symbol,
         "instead": list(row.finding.instead),
-        "message": row.finding.message,
+        "message": row.message,
         "versions": list(row.versions),
     }
 

@@ -14,6 +14,7 @@ import click
 
 from simworlds.errors import UserError
 from simworlds.settings import home_folder
+from simworlds.terminal.markdown import print_markdown
 
 if TYPE_CHECKING:
     from kb_serve.answer.docs_answer import DocsAnswer
@@ -91,14 +92,8 @@ def _print_answer(answer: DocsAnswer, *, as_json: bool) -> bool:
         from dataclasses import asdict  # noqa: PLC0415 - only for --json
 
         click.echo(json.dumps(asdict(answer), ensure_ascii=False, indent=2))
-    elif sys.stdout.isatty():
-        from rich.markdown import Markdown  # noqa: PLC0415 - loading it takes as long as the query
-
-        from simworlds.terminal.console import Console  # noqa: PLC0415
-
-        Console(sys.stdout).print(Markdown(answer.text, hyperlinks=False))
     else:
-        click.echo(answer.text)
+        print_markdown(answer.text)
     return answer.kind != "none" or bool(answer.notes)  # of what is gone without a successor, notes say all
 
 

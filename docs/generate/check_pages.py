@@ -9,7 +9,8 @@ FOLDER = "check"
 
 _HEAD = """\
 What `simworlds check` finds in Python code; [check.md](check.md) explains the command. An **error** is what Blender \
-refuses when the line runs, a **warning** what does something else than it seems to, a **note** what is worth a look."""
+refuses when the line runs, a **warning** what does something else than it seems to, a **note** what is worth a look. \
+The severity is that of most of a rule's findings; some have another."""
 
 
 def check_pages() -> dict[str, str]:
@@ -31,13 +32,6 @@ def _page(rule: Rule) -> str:
         f"# {rule.id}",
         GENERATED,
         f"[all rules](../check-rules.md) · {rule.severity}",
-        _single_backticks(rule.page),
+        rule.page,
         f"Ignore it on a line with `# simworlds: ignore[{rule.id}]`.",
     )
-
-
-def _single_backticks(text: str) -> str:
-    """A docstring as Markdown: its double backticks become single ones, except those that fence code."""
-    blocks = text.split("```")
-    blocks[::2] = [block.replace("``", "`") for block in blocks[::2]]
-    return "```".join(blocks)

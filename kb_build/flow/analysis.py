@@ -10,7 +10,7 @@ from kb_build.flow.calls import Calls
 from kb_build.flow.core import StepsExhausted
 from kb_build.flow.functions import Functions
 from kb_build.flow.other_versions import doubt_what_others_use
-from kb_build.flow.parse import parsed
+from kb_build.flow.parse import parsed, too_long
 from kb_build.flow.source_files import SourceFile, keeps_annotations, module_name
 from kb_build.flow.statements import Statements
 from kb_build.flow.trees import nodes_in
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from kb_build.flow.core import Reader
     from kb_build.flow.types import Given, Resolution, Type
 
-MOST_CHARACTERS = 2_000_000
 MOST_STEPS = 4_000_000  # expressions that are read, some more than once
 _STEPS_PER_CHARACTER = 4
 _ROUNDS = 3  # in which a function is read for what its module and its class bind
@@ -211,12 +210,8 @@ def analyse_files(files: Mapping[str, str], api: Api, version: tuple[int, ...] =
 
 def _parsed(path: str, code: str) -> SourceFile:
     name, is_package = module_name(path)
-    if len(code) > MOST_CHARACTERS:
-        tree = SyntaxError(
-            f"the script is too large ({len(code):,} characters; up to {MOST_CHARACTERS:,} are read)"
-        )
-    else:
-        tree = parsed(code.removeprefix("\ufeff"))
+    why_not = too_long(code)
+    tree = SyntaxError(why_not) if why_not else parsed(code.removeprefix("\ufeff"))
     steps = min(MOST_STEPS, 20_000 + _STEPS_PER_CHARACTER * len(code))
     if isinstance(tree, SyntaxError):
         return SourceFile(name, is_package, None, steps, tree)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.flow.parse import too_long
 from kb_check.findings import Finding, Span
 from kb_check.rule import Rule
 
@@ -19,9 +20,9 @@ if TYPE_CHECKING:
 
 def _check(script: Script) -> Iterator[Finding]:
     if not script.analysis.complete:
-        read = "a part" if script.tree.body else "nothing"
-        why = f"too large ({len(script.code):,} characters) or too deeply nested"
-        message = f"The script is {why}: {read} of it was checked."
+        read = "Only a part" if script.tree.body else "Nothing"
+        why = too_long(script.code) or "it is nested too deeply, or takes too long to be read to its end"
+        message = f"{read} of the script was checked: {why}."
         yield Finding(RULE.id, "warning", Span(1, 0, 1, 0), message)
 
 

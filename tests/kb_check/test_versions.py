@@ -57,6 +57,27 @@ def test_the_range_is_told_with_what_breaks_beyond(base: Path) -> None:
     assert "1 more file without errors." in lines
 
 
+def test_what_is_wrong_in_several_is_said_of_none_alone(base: Path) -> None:
+    report = in_versions(base, {"4.5": True, "5.1": True})
+    (row,) = report.breaks()
+    found = replace(
+        row, finding=replace(row.finding, message="`x` does not exist in Blender 4.5: removed in 2.80.")
+    )
+    assert found.message == "`x` does not exist: removed in 2.80."
+    assert replace(found, versions=("4.5",)).message == found.finding.message
+    assert report.verdict() == (
+        "Breaks in 4.5: 1 error, first at addon/old.py:2; breaks in 5.1: 1 error, first at addon/old.py:2."
+    )
+
+
+def test_a_file_that_could_not_be_checked_is_good_nowhere(base: Path) -> None:
+    good, bad = in_versions(base, {"4.5": False, "5.1": False}).reports
+    report = VersionsReport((good, replace(bad, files=bad.files[:1])))
+    assert report.runs_in() == ["4.5"]
+    assert report.verdict() == "Nothing found that breaks in 4.5."
+    assert VersionsReport((replace(good, files=[]),)).verdict() == ""
+
+
 def test_a_range_of_three_is_written_as_one(base: Path) -> None:
     report = in_versions(base, {"4.2": False, "4.3": False, "4.4": False, "4.5": True, "5.0": False})
     assert report.verdict().startswith("Nothing found that breaks in 4.2 to 4.4 and 5.0; breaks in 4.5")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import subprocess
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -141,10 +142,19 @@ def test_without_a_base_the_way_to_one_is_said(command: Command) -> None:
     "arguments",
     [
         ["--fix", "--diff"],
+        ["--json", "--sarif"],
+        ["--github", "--json"],
+        ["--diff", "--json"],
         ["--unsafe-fixes"],
         ["--rules", "nothing"],
+        ["--rules", ""],
+        ["--explain", "nothing"],
         ["--jobs", "0"],
-        ["-", "--fix"],
+        ["-", "--fix", "."],
+        ["--stdin-filename", "a.py", "."],
+        [""],
+        ["--blender", ","],
+        ["--blender", "4.5", "--blender", "5.1", "--fix"],
         ["--blender", "4.5,5.1", "--fix"],
         ["--blender", "4.5,5.1", "--github"],
         ["--blender", "x,y"],
@@ -154,6 +164,42 @@ def test_wrong_options_are_told(command: Command, arguments: list[str]) -> None:
     done = command(*arguments)
     assert done.code == 2
     assert "Error: " in done.err
+
+
+def test_several_versions_of_a_file_are_said_to_be_its(command: Command) -> None:
+    place = command.write("pyproject.toml", '[tool.simworlds.check]\nblender = ["4.5", "5.1"]\n')
+    done = command("--fix")
+    assert done.err.endswith(
+        f"Error: --fix is for one version, and {place} names several (4.5, 5.1). Give one, as --blender 5.1.\n"
+    )
+
+
+def test_what_is_excluded_is_told_and_not_called_good(command: Command, base: Path) -> None:
+    (command.home / "kb" / "blender-2.90.sqlite").symlink_to(base)
+    versions = f"2.90,{base.stem.removeprefix('blender-')}"
+    place = command.write("pyproject.toml", '[tool.simworlds.check]\nexclude = ["vendor"]\n')
+    command.write("vendor/a.py", WRONG)
+    for name in ("vendor", "vendor/a.py"):
+        for several in ([], ["--blender", versions]):
+            done = command(name, *several)
+            assert (done.code, done.out) == (0, "")
+            assert done.err == f"Warning: {name} was not checked: {place} excludes it.\n"
+
+
+def test_a_path_that_is_not_there_is_good_in_no_version(command: Command, base: Path) -> None:
+    (command.home / "kb" / "blender-2.90.sqlite").symlink_to(base)
+    versions = ("--blender", f"2.90,{base.stem.removeprefix('blender-')}")
+    done = command("nothing.py", *versions)
+    assert (done.code, done.out) == (2, "")
+    assert command("nothing.py", "--json", *versions).json["runs_in"] == []
+
+
+def test_a_rule_is_explained(command: Command) -> None:
+    assert "\nsyntax-error            error    Code that Python cannot read\n" in command("--list-rules").out
+    done = command("--explain", "syntax-error")
+    assert done.out.startswith("# syntax-error\n\nCode that Python cannot read: error.\n")
+    assert "```python\nprint" in done.out
+    assert done.code == 0
 
 
 def test_severities_decide_how_it_ends(command: Command) -> None:
@@ -192,6 +238,41 @@ def test_standard_input_is_checked(command: Command) -> None:
     ]
     diff = command("-", "--diff", given=WRONG.encode()).out
     assert '+bpy.context.object.display_type = "WIRE"' in diff
+
+
+def test_standard_input_is_checked_as_a_file_of_its_package(command: Command) -> None:
+    command.write("addon/__init__.py", "import bpy\nbpy.types.Scene.mine = bpy.props.IntProperty()\n")
+    command.write("addon/ui.py", "broken(")
+    for name in ("addon/ui.py", "addon/new.py"):
+        typed = f"{WRONG}bpy.context.scene.mine = 1\n".encode()
+        done = command("--json", "--stdin-filename", name, given=typed)
+        assert done.places == [(name, 2, "unknown-attribute")]
+    assert command("-", "--stdin-filename", "a.ipynb", given=b"{}").out.startswith("a.ipynb:1:1: error")
+
+
+def test_the_mended_text_of_standard_input_is_printed(command: Command) -> None:
+    command.write("pyproject.toml", '[tool.simworlds.check]\nexclude = ["vendor"]\n')
+    typed = WRONG.replace("\n", "\f\r\n").encode()
+    done = command("-", "--fix", given=typed)
+    assert done.out.encode() == RIGHT.replace("\n", "\f\r\n").encode()
+    assert done.err.startswith("Mended: 1 finding.\n")
+    assert done.code == 0
+    excluded = command("--stdin-filename", "vendor/a.py", "--fix", given=typed)
+    assert (excluded.code, excluded.out.encode()) == (0, typed)
+
+
+def test_pipes_are_checked_and_not_written(command: Command) -> None:
+    pipe = ("sh", "-c", 'printf "%s" "$1" | { shift; "$@"; }', "sh", WRONG)
+    done = subprocess.run(
+        [*pipe, *SIMWORLDS, "check", "/dev/stdin", "--fix"],
+        env=command.environment,
+        cwd=command.folder,
+        capture_output=True,
+        check=False,
+        text=True,
+    )
+    assert "/dev/stdin cannot be written: it is not a file." in done.stderr
+    assert done.stdout.startswith("Mended: 1 finding.")
 
 
 def test_what_a_package_registers_may_be_used_in_all_of_it(command: Command) -> None:
@@ -238,12 +319,13 @@ def test_a_python_2_script_is_said_to_be_one_and_checked(command: Command) -> No
 @pytest.mark.parametrize(
     ("content", "rule"),
     [
-        (b"import bpy\n" + b"x\n" * 3_000_000, "incomplete"),
         (b"x = '\xe9'\n", "syntax-error"),
         (b"a\0b\n", "syntax-error"),
         (b"(" * 5_000, "syntax-error"),
         (b"x = " + b"-" * 100_000 + b"1", "syntax-error"),
         (b"# coding: none\n", "syntax-error"),
+        ("x = 1\n".encode("utf-16"), "syntax-error"),
+        (b"BLENDER-v501\0\xff(\n", "syntax-error"),
     ],
 )
 def test_bad_files_are_a_finding(command: Command, content: bytes, rule: str) -> None:
@@ -253,12 +335,24 @@ def test_bad_files_are_a_finding(command: Command, content: bytes, rule: str) ->
     assert done.err == ""
 
 
+def test_a_null_byte_is_reported_where_it_stands(command: Command) -> None:
+    command.write("a.py", b"import bpy\r\nx = \0 1\r\nbpy.context.object.draw_type\r\n")
+    done = command("--json")
+    assert done.places == [("a.py", 2, "syntax-error"), ("a.py", 3, "unknown-attribute")]
+    assert done.json["findings"][0]["column"] == 5
+
+
 def test_a_file_that_cannot_be_read_is_told(command: Command) -> None:
     command.write("a.py", b"#" * ((16 << 20) + 1))
     command.write("b.py", WRONG)
+    command.write("c.py", b"x\n" * 1_000_001)
     done = command("--json")
     assert done.code == 2
     assert "a.py cannot be read: it is larger than 16 MiB" in done.err
+    assert (
+        "c.py was not checked: it has 2,000,002 characters, and no more than 2,000,000 are read" in done.err
+    )
+    assert done.json["files"] == 1
     assert done.json["unchecked"]
     assert len(done.places) == 1
 

@@ -40,6 +40,7 @@ def test_without_a_file_everything_is_asked(tmp_path: Path) -> None:
 def test_versions_are_a_text_or_a_list(tmp_path: Path) -> None:
     assert configured(tmp_path, 'blender = "4.5,5.1"').blender == ("4.5", "5.1")
     assert configured(tmp_path, 'blender = ["4.5", "5.1"]').blender == ("4.5", "5.1")
+    assert configured(tmp_path, "blender = []").blender == ()
 
 
 @pytest.mark.parametrize(
@@ -72,8 +73,14 @@ def test_severities_can_be_changed_and_decide_what_fails(tmp_path: Path) -> None
     [
         ('blendr = "5.1"', r"check\.blendr is unknown\. There are: blender, rules, ignore, exclude"),
         ('rules = ["unknwon"]', r"check\.rules: there is no rule 'unknwon'\. There are: .*unknown-attribute"),
-        ("exclude = 1", r"check\.exclude must be a list of texts"),
-        ("exclude = [1]", r"check\.exclude must be a list of texts"),
+        ("exclude = 1", r"check\.exclude must be a list of strings"),
+        ("exclude = [1]", r"check\.exclude must be a list of strings"),
+        (
+            "blender = 5.1",
+            r'check\.blender must be a version in quotes, as "5\.1", or a list of such versions',
+        ),
+        ('blender = ["5.1", 4.5]', r"check\.blender must be a version in quotes"),
+        ('blender = " , "', r"check\.blender must be a version in quotes"),
         (
             'severity = { unknown-socket = "fatal" }',
             r"severity\.unknown-socket must be one of: error, warning, note",
@@ -89,7 +96,13 @@ def test_what_is_wrong_is_said(tmp_path: Path, text: str, message: str) -> None:
         configured(tmp_path, text)
 
 
-@pytest.mark.parametrize("text", ["[tool]\nsimworlds = 1\n", "tool = 1\n", "[tool.simworlds]\nx = 1\n"])
+def test_a_misspelt_table_is_told(tmp_path: Path) -> None:
+    (tmp_path / "pyproject.toml").write_text("[tool.simworlds.chek]\n")
+    with pytest.raises(BadConfiguration, match=r"tool\.simworlds\.chek is unknown\. There is: check\."):
+        read_configuration(tmp_path)
+
+
+@pytest.mark.parametrize("text", ["[tool]\nsimworlds = 1\n", "tool = 1\n", "[tool.simworlds]\n"])
 def test_other_tables_are_none_of_its_business(tmp_path: Path, text: str) -> None:
     (tmp_path / "pyproject.toml").write_text(text)
     assert read_configuration(tmp_path).rules == ()

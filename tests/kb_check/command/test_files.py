@@ -176,9 +176,26 @@ def test_what_has_nothing_to_check_is_said(tree: Path) -> None:
     assert len(found.groups) == 1
 
 
-def test_pipes_are_not_read(tree: Path) -> None:
+def test_what_the_patterns_leave_out_is_told(tree: Path) -> None:
+    found = find_files([tree / "scripts", tree / "loose.py", tree / "addon"], ("scripts/*", "loose.py"), tree)
+    assert (found.excluded, found.faults) == ([tree / "scripts", tree / "loose.py"], [])
+
+
+def test_what_git_leaves_out_whole_is_told(tree: Path) -> None:
+    ignoring(tree, "*.py\n", "scripts")
+    (fault,) = find_files([tree / "scripts"]).faults
+    assert fault.startswith(f"Git leaves out all Python files in {tree / 'scripts'}.")
+
+
+def test_pipes_are_read_where_they_are_named(tree: Path) -> None:
     os.mkfifo(tree / "scripts" / "pipe.py")
     assert groups(tree, "scripts") == [["scripts/e.py"], ["scripts/f.py"]]
+    assert groups(tree, "scripts/pipe.py") == [["scripts/pipe.py"]]
+
+
+def test_a_file_whose_content_is_given_need_not_be_there(tree: Path) -> None:
+    found = find_files([tree / "addon" / "new.py"], unsaved=[tree / "addon" / "new.py"])
+    assert tree / "addon" / "a.py" in {file.path for file in found.groups[0].files}
 
 
 def ignoring(tree: Path, text: str, folder: str = ".") -> None:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         (b"x = 1\r\n", "x = 1\r\n", "utf-8"),
         (b"\xef\xbb\xbfx = 1\n", "x = 1\n", "utf-8-sig"),
         ("# coding: latin-1\nx = 'é'\n".encode("latin-1"), "# coding: latin-1\nx = 'é'\n", "iso-8859-1"),
+        (b"BLENDER = 1\n", "BLENDER = 1\n", "utf-8"),
         (b"", "", "utf-8"),
     ],
 )
@@ -38,7 +39,10 @@ def test_text_is_written_back_as_it_was(data: bytes, text: str, encoding: str) -
         (b"# coding: idna\n" + b"a" * 200_000, "the encoding idna is not supported", 1),
         (b"# coding: unicode-escape\n\\x41\n", "the encoding unicode-escape is not supported", 1),
         (b"\xef\xbb\xbf# coding: latin-1\nx\n", "encoding problem", 1),
-        (b"\xff\xfex\x00\n\x00", "invalid or missing encoding declaration", 1),
+        ("x\n".encode("utf-16"), "it is UTF-16: save it as UTF-8", 1),
+        (b"BLENDER-v501\0", "it is a .blend file, which `simworlds verify` checks", 1),
+        (b"\x28\xb5\x2f\xfd\0", "it is a compressed file, as .blend files are", 1),
+        (b"PK\x03\x04\0", "it is a ZIP archive", 1),
     ],
 )
 def test_what_python_refuses_is_a_fault(data: bytes, fault: str, line: int) -> None:
@@ -90,7 +94,7 @@ def test_only_what_ipython_alone_understands_is_left_out(cell: str, text: str) -
 )  # fmt: skip
 def test_what_is_no_notebook_is_a_fault(data: bytes) -> None:
     source = read_source(data, "a.ipynb")
-    assert source.fault.startswith("this is not a notebook")
+    assert source.fault.startswith("it is not a notebook")
     assert source.text == ""
 
 

@@ -1,0 +1,58 @@
+"""What the command is to check: files and folders that are named, and standard input."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from kb_check.files import find_files
+from kb_check.project import LoadedFile
+from kb_check.run import load
+from kb_check.source import MOST_BYTES
+
+if TYPE_CHECKING:
+    from kb_check.configuration import Configuration
+    from kb_check.project import Group
+
+STDIN = Path("-")
+_STDIN_NAME = Path("<stdin>")
+
+
+@dataclass(slots=True)
+class Inputs:
+    """The files, read, with sentences about what could not be read and about what the configuration leaves out.
+
+    ``typed`` is what standard input gave, if it was read: the content of a file of these.
+    """
+
+    groups: list[Group]
+    faults: list[str]
+    left_out: list[str] = field(default_factory=list)
+    typed: bytes | None = None
+
+
+def read_inputs(
+    paths: tuple[Path, ...], configuration: Configuration, stdin_name: Path | None, *, gitignore: bool
+) -> Inputs:
+    """Reads what is named; ``-`` is standard input, which is checked as the file ``stdin_name`` if that is given."""
+    faults: list[str] = []
+    typed = _typed(faults) if STDIN in paths else None
+    given = {stdin_name: typed} if stdin_name and typed is not None else {}
+    named = [*given, *(path for path in paths if path != STDIN)]
+    found = find_files(named, configuration.exclude, configuration.folder, gitignore=gitignore, unsaved=given)
+    faults += found.faults
+    groups = load(found.groups, faults, given)
+    if typed is not None and not given:
+        groups.append((LoadedFile(str(_STDIN_NAME), typed),))
+    left_out = [f"{path} was not checked: {configuration.file} excludes it." for path in found.excluded]
+    return Inputs(groups, faults, left_out, typed)
+
+
+def _typed(faults: list[str]) -> bytes | None:
+    data = sys.stdin.buffer.read(MOST_BYTES + 1)
+    if len(data) <= MOST_BYTES:
+        return data
+    faults.append(f"Standard input is larger than {MOST_BYTES >> 20} MiB.")
+    return None
