@@ -8,7 +8,7 @@ import time
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -174,7 +174,8 @@ class _Checking:
 
 def _one_version(checking: _Checking, base: Path, cache: ResultCache | None) -> list[Report]:
     """Checks for one Blender, with fixes, and prints the report."""
-    from kb_check.project import Project  # noqa: PLC0415 - not for --help
+    from kb_check.formats.printing import print_report  # noqa: PLC0415 - not for --help
+    from kb_check.project import Project  # noqa: PLC0415
     from kb_check.run import Run  # noqa: PLC0415
     from kb_serve.reader import BaseReader  # noqa: PLC0415
 
@@ -197,9 +198,9 @@ def _one_version(checking: _Checking, base: Path, cache: ResultCache | None) -> 
         run.print_diff()
     elif is_filter:
         _print_mended(run, inputs.typed or b"")
-        _print(report, checking.form, sys.stderr)
+        print_report(report, checking.form, sys.stderr)
     else:
-        _print(report, checking.form, sys.stdout)
+        print_report(report, checking.form, sys.stdout)
     return [report]
 
 
@@ -264,8 +265,13 @@ def _base(version: str | None) -> Path:
 def _inputs(paths: tuple[Path, ...], configuration: Configuration, choices: dict[str, Any]) -> Inputs:
     from kb_check.inputs import read_inputs  # noqa: PLC0415 - not for --help
 
-    gitignore = configuration.gitignore and not choices["no_gitignore"]
-    return read_inputs(paths, configuration, choices["stdin_filename"], gitignore=gitignore)
+    return read_inputs(
+        [path for path in paths if path != _STDIN],
+        configuration,
+        reads_stdin=_STDIN in paths,
+        stdin_name=choices["stdin_filename"],
+        gitignore=configuration.gitignore and not choices["no_gitignore"],
+    )
 
 
 @contextmanager
@@ -298,37 +304,3 @@ def _progress() -> Generator[Callable[[int, int], None]]:
                 shown("Checking", done, total)
 
         yield progress
-
-
-def _print(report: Report, form: str | None, stream: TextIO) -> None:
-    if form == "json":
-        from kb_check.formats.json_format import as_json  # noqa: PLC0415 - one of them is used
-
-        click.echo(as_json(report), stream)
-    elif form == "sarif":
-        from kb_check.formats.sarif import as_sarif  # noqa: PLC0415
-
-        click.echo(as_sarif(report), stream)
-    elif form == "github":
-        from kb_check.formats.github import github_lines  # noqa: PLC0415
-
-        for line in github_lines(report):
-            click.echo(line, stream)
-    else:
-        _print_text(report, stream)
-
-
-def _print_text(report: Report, stream: TextIO) -> None:
-    from kb_check.formats.text import text_lines  # noqa: PLC0415 - not for --json
-
-    if not stream.isatty():
-        for line in text_lines(report):
-            click.echo("".join(text for text, _ in line), stream)
-        return
-    from rich.text import Text  # noqa: PLC0415 - only for a terminal
-
-    from simworlds.terminal.console import Console  # noqa: PLC0415
-
-    console = Console(stream)
-    for line in text_lines(report):
-        console.print(Text.assemble(*line), soft_wrap=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kb_check.files import find_files
@@ -13,11 +12,13 @@ from kb_check.run import load
 from kb_check.source import MOST_BYTES
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
     from kb_check.configuration import Configuration
     from kb_check.project import Group
 
-STDIN = Path("-")
-_STDIN_NAME = Path("<stdin>")
+_STDIN_NAME = "<stdin>"
 
 
 @dataclass(slots=True)
@@ -34,18 +35,25 @@ class Inputs:
 
 
 def read_inputs(
-    paths: tuple[Path, ...], configuration: Configuration, stdin_name: Path | None, *, gitignore: bool
+    paths: Sequence[Path],
+    configuration: Configuration,
+    *,
+    reads_stdin: bool = False,
+    stdin_name: Path | None = None,
+    gitignore: bool = True,
 ) -> Inputs:
-    """Reads what is named; ``-`` is standard input, which is checked as the file ``stdin_name`` if that is given."""
+    """Reads the files at and below paths, and standard input, which is checked as the file ``stdin_name`` if that is
+    given.
+    """
     faults: list[str] = []
-    typed = _typed(faults) if STDIN in paths else None
+    typed = _typed(faults) if reads_stdin else None
     given = {stdin_name: typed} if stdin_name and typed is not None else {}
-    named = [*given, *(path for path in paths if path != STDIN)]
+    named = [*given, *paths]
     found = find_files(named, configuration.exclude, configuration.folder, gitignore=gitignore, unsaved=given)
     faults += found.faults
     groups = load(found.groups, faults, given)
     if typed is not None and not given:
-        groups.append((LoadedFile(str(_STDIN_NAME), typed),))
+        groups.append((LoadedFile(_STDIN_NAME, typed),))
     left_out = [f"{path} was not checked: {configuration.file} excludes it." for path in found.excluded]
     return Inputs(groups, faults, left_out, typed)
 

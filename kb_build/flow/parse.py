@@ -21,7 +21,7 @@ def parsed(code: str) -> ast.Module | SyntaxError:
     """The syntax tree of a script, or why there is none."""
     if (place := code.find("\0")) >= 0:  # Python does not say where
         lines = _LINE_END.split(code[:place])
-        return SyntaxError("there is a null byte", (None, len(lines), len(lines[-1]) + 1, None))
+        return SyntaxError("null bytes are not allowed", (None, len(lines), len(lines[-1]) + 1, None))
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
