@@ -79,16 +79,8 @@ def find_files(
             below = [path]
         elif path.is_dir():
             below = list(_below(path, excluded, ignored))
-            if below:
-                pass
-            elif any(_below(path, _Excluded((), path), ignored)):
-                found.excluded.append(path)
-            elif any(_below(path, excluded)):
-                found.faults.append(
-                    f"Git leaves out all Python files in {path}. Those that are named are checked all the same."
-                )
-            else:
-                found.faults.append(f"There are no Python files in {path}.")
+            if not below:
+                _tell_why_none(path, excluded, ignored, found)
         else:  # a pipe can be read only once, so that nobody may look into it for what it uses
             found.groups.append(FileGroup((CodeFile(path),)))
         for file in below:
@@ -99,6 +91,18 @@ def find_files(
                 )
     found.groups += _grouped(wanted, excluded)
     return found
+
+
+def _tell_why_none(folder: Path, excluded: _Excluded, ignored: GitIgnore | None, found: FoundFiles) -> None:
+    """Tells what leaves no Python file of a folder to check."""
+    if any(_below(folder, _Excluded((), folder), ignored)):
+        found.excluded.append(folder)
+    elif any(_below(folder, excluded)):
+        found.faults.append(
+            f"Git leaves out all Python files in {folder}. Those that are named are checked all the same."
+        )
+    else:
+        found.faults.append(f"There are no Python files in {folder}.")
 
 
 def _grouped(wanted: dict[Path, Path], excluded: _Excluded) -> Iterator[FileGroup]:

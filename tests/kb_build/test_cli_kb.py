@@ -13,6 +13,7 @@ import pytest
 from places import REPO
 from running import run_here
 
+from kb_build.cli import replaces_files_whole
 from kb_build.summaries.store import SummaryStore
 from kb_build.summaries.types import PageSummary, summary_key
 
@@ -263,3 +264,11 @@ def test_a_build_command_loads_nothing_heavy_before_it_knows_what_to_do(tmp_path
         [sys.executable, "-c", code], env=environment(tmp_path), capture_output=True, text=True, check=False
     )
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_what_replaces_files_says_that_the_old_ones_are_unchanged() -> None:
+    def interrupted() -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt, match="The old files are unchanged"):
+        replaces_files_whole(interrupted)()
