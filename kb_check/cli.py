@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from kb_check.code_path import CodePath
 from simworlds.errors import UserError
 from simworlds.operating_system import SYSTEM
 from simworlds.settings import cache_folder, home_folder
@@ -32,18 +33,8 @@ _FORMS = ("json", "sarif", "github", "diff")
 _OF_ONE_VERSION = ("fix", "diff", "github")
 
 
-class _PathType(click.Path):
-    """A path that says something: an empty one, of a variable that is not set, would be the current folder."""
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """See click."""
-        if not str(value):
-            self.fail("it is empty. Give a file or a folder; the current one is .", param, ctx)
-        return super().convert(value, param, ctx)
-
-
 @click.command()
-@click.argument("paths", nargs=-1, type=_PathType(path_type=Path, allow_dash=True))
+@click.argument("paths", nargs=-1, type=CodePath())
 @click.option(
     "--blender",
     metavar="VERSIONS",
@@ -62,7 +53,7 @@ class _PathType(click.Path):
 @click.option(
     "--stdin-filename",
     metavar="FILE",
-    type=_PathType(path_type=Path),
+    type=CodePath(),
     help="The file that standard input is checked as: what its package registers is known.",
 )
 @click.option("--no-gitignore", is_flag=True, help="In folders: check what git leaves out, too.")
