@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import closing
 from pathlib import Path
 
 import click
@@ -29,21 +30,27 @@ _MOST_NAMED = 5
 def stubs(*, version: str | None, out: Path, base: Path | None, with_docs: bool, wheel: bool) -> None:
     """Write typed stubs of Blender's Python API, for pyright, mypy and editors.
 
-    VERSION is that of a knowledge base, by default the newest. Exit code: 0, or 2 on errors.
+    VERSION is that of a knowledge base, by default that of the Blender in use. Exit code: 0, or 2 on errors.
     """
-    from kb_build.schema import NoBase  # noqa: PLC0415 - not for --help
-    from kb_check.stubs.package import write_folder, write_wheel  # noqa: PLC0415 - likewise
-    from kb_serve.locate import find_base  # noqa: PLC0415 - likewise
+    if version and base:
+        raise click.UsageError("VERSION and --base exclude each other.")
+    from kb_check.stubs.package import write_folder, write_wheel  # noqa: PLC0415 - not for --help
+    from kb_serve.in_use import tell_of_other  # noqa: PLC0415 - likewise
 
     try:
-        source = base or find_base(version)
+        source = base or _base(version)
         if wheel:
             target, written = write_wheel(source, out, with_docs=with_docs)
         else:
             target, written = out, write_folder(source, out, with_docs=with_docs)
-    except (UserError, OSError, NoBase) as error:
+    except UserError as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)
+    except OSError as error:
+        click.echo(f"Error: {error.filename or out} cannot be written: {error.strerror or error}.", err=True)
+        sys.exit(_ERROR)
+    if not (version or base):
+        tell_of_other(written.blender)
     click.echo(
         f"{target}: Blender {written.blender}, {written.files} files, {written.size / _MEGABYTE:.1f} MB"
     )
@@ -53,3 +60,11 @@ def stubs(*, version: str | None, out: Path, base: Path | None, with_docs: bool,
         click.echo(
             f"Left out, as Python cannot spell them: {named}" + (f" and {more} more" if more > 0 else "")
         )
+
+
+def _base(version: str | None) -> Path:
+    from kb_serve.bases import Bases  # noqa: PLC0415 - not for --help
+    from simworlds.settings import home_folder  # noqa: PLC0415 - likewise
+
+    with closing(Bases(home_folder(), default=version)) as bases:
+        return bases.file()

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import base64
 import hashlib
-import shutil
 import zipfile
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
-from kb_build.schema import open_read_only, unpack
+from kb_build.schema import unpack
 from kb_build.symbols.records import Symbol, symbol_from_json
 from kb_check.stubs.modules import MARK, Stubs, write_modules
+from kb_serve.reader import open_file
 from simworlds.errors import UserError
-from simworlds.files import staged_file, staged_folder
+from simworlds.files import staged_file, write_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
     from pathlib import Path
 
 _NAME = "simworlds_bpy_stubs"
@@ -40,8 +41,8 @@ class Written:
 
 
 def read_symbols(base: Path) -> tuple[str, list[Symbol]]:
-    """The version and the symbols of a base. Raises FileNotFoundError and schema.NoBase."""
-    connection = open_read_only(base)
+    """The version and the symbols of a base. Raises KBServeError, OSError."""
+    connection = open_file(base)
     try:
         version = connection.execute("SELECT value FROM meta WHERE name = 'blender'").fetchone()[0]
         rows = connection.execute("SELECT record FROM symbols ORDER BY path")
@@ -63,36 +64,57 @@ def stub_files(stubs: Stubs) -> Iterator[tuple[PurePosixPath, str]]:
 def write_folder(base: Path, folder: Path, *, with_docs: bool = False) -> Written:
     """Writes the stubs of a base into a folder, in the place of those that were written there before.
 
-    Raises OutputInTheWay where another's package has the name of one of them.
+    Other files in their packages stay. Raises OutputInTheWay where a package or a file of another's has the name of one
+    of them, and OSError.
     """
     blender, symbols = read_symbols(base)
     stubs = write_modules(symbols, with_docs=with_docs)
     packages: dict[str, dict[PurePosixPath, bytes]] = {}
     for path, text in stub_files(stubs):
         packages.setdefault(path.parts[0], {})[path.relative_to(path.parts[0])] = text.encode()
-    for name in packages:
-        _check_is_ours(folder / name)
+    former = {name: _former_files(folder / name, files) for name, files in packages.items()}
     for name, files in packages.items():
-        shutil.rmtree(folder / name, ignore_errors=True)
-        with staged_folder(folder / name) as staged:
-            for path, data in files.items():
-                (staged / path).parent.mkdir(parents=True, exist_ok=True)
-                (staged / path).write_bytes(data)
+        for path, data in files.items():
+            write_whole(folder / name / path, data, durable=False)
+        for path in former[name].difference(files):
+            _remove(folder / name, path)
     written = [data for files in packages.values() for data in files.values()]
     return Written(blender, len(written), sum(map(len, written)), tuple(stubs.left_out))
 
 
-def _check_is_ours(package: Path) -> None:
-    """Raises OutputInTheWay where a package is there that was not written here."""
-    if not package.exists() and not package.is_symlink():
-        return
-    try:
-        with (package / "__init__.pyi").open(encoding="utf-8") as file:
-            is_ours = file.readline().startswith(MARK)
-    except (OSError, UnicodeDecodeError):
-        is_ours = False
-    if not is_ours or package.is_symlink():
+def _former_files(package: Path, files: Iterable[PurePosixPath]) -> set[PurePosixPath]:
+    """The files of a package that were written here before.
+
+    Raises OutputInTheWay where the package, or one of ``files`` in it, is another's.
+    """
+    if package.is_symlink() or (package.exists() and not _is_ours(package / "__init__.pyi")):
         raise OutputInTheWay(f"{package} is there and was not written by simworlds. Choose another folder.")
+    for path in files:
+        if (package / path).exists() and not _is_ours(package / path):
+            raise OutputInTheWay(
+                f"{package / path} is there and was not written by simworlds. Move it away, or choose another folder."
+            )
+    return {
+        PurePosixPath(path.relative_to(package).as_posix())
+        for path in package.rglob("*.pyi")
+        if _is_ours(path)
+    }
+
+
+def _is_ours(file: Path) -> bool:
+    try:
+        with file.open(encoding="utf-8") as text:
+            return text.readline().startswith(MARK)
+    except (OSError, UnicodeDecodeError):
+        return False
+
+
+def _remove(package: Path, path: PurePosixPath) -> None:
+    """Removes a file of a package, and the folders that are empty without it."""
+    (package / path).unlink()
+    with suppress(OSError):  # a folder with other files stays
+        for folder in path.parents:
+            (package / folder).rmdir()
 
 
 def write_wheel(base: Path, folder: Path, *, with_docs: bool = False) -> tuple[Path, Written]:

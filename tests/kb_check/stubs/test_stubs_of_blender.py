@@ -137,14 +137,27 @@ def test_every_package_is_marked_as_written_here(folder: Path) -> None:
 
 def test_writes_again_over_its_own(small_base: Path, tmp_path: Path) -> None:
     write_folder(small_base, tmp_path)
-    stale = tmp_path / "bpy-stubs" / "stale.pyi"
-    stale.write_text("", encoding="utf-8")
+    stale = tmp_path / "bpy-stubs" / "former" / "stale.pyi"
+    stale.parent.mkdir()
+    stale.write_text(f"{MARK}\n", encoding="utf-8")
+    mine = tmp_path / "bpy-stubs" / "mine.pyi"
+    mine.write_text("y: int\n", encoding="utf-8")
     other = tmp_path / "other-stubs"
     other.mkdir()
     write_folder(small_base, tmp_path)
-    assert not stale.exists()
+    assert not stale.parent.exists()
+    assert mine.read_text(encoding="utf-8") == "y: int\n"
     assert other.is_dir()
     assert (tmp_path / "bpy-stubs" / "__init__.pyi").read_text(encoding="utf-8").startswith(MARK)
+
+
+def test_never_replaces_a_file_that_was_written_by_hand(small_base: Path, tmp_path: Path) -> None:
+    write_folder(small_base, tmp_path)
+    mine = tmp_path / "bpy-stubs" / "types.pyi"
+    mine.write_text("class Mine: ...\n", encoding="utf-8")
+    with pytest.raises(OutputInTheWay, match=r"types\.pyi is there"):
+        write_folder(small_base, tmp_path)
+    assert mine.read_text(encoding="utf-8") == "class Mine: ...\n"
 
 
 @pytest.mark.parametrize("text", [None, "", "# somebody else's\n"])
@@ -190,6 +203,23 @@ def test_the_command_says_what_is_missing(tmp_path: Path, monkeypatch: pytest.Mo
     assert "simworlds kb build 5.1" in result.output
     broken = tmp_path / "broken.sqlite"
     broken.write_bytes(b"no base")
-    result = CliRunner().invoke(command, ["--base", str(broken), "--out", str(tmp_path / "typings")])
+    for base, said in (
+        (broken, "not readable as a knowledge base"),
+        (tmp_path / "none", "no knowledge base here"),
+    ):
+        result = CliRunner().invoke(command, ["--base", str(base), "--out", str(tmp_path / "typings")])
+        assert result.exit_code == 2
+        assert result.output.startswith(f"Error: {base}: ")
+        assert said in result.output
+
+
+def test_the_command_takes_one_base_and_names_a_place_that_is_no_folder(
+    small_base: Path, tmp_path: Path
+) -> None:
+    both = CliRunner().invoke(command, ["5.1", "--base", str(small_base), "--out", str(tmp_path)])
+    assert both.exit_code == 2
+    assert "exclude each other" in both.output
+    (tmp_path / "file").touch()
+    result = CliRunner().invoke(command, ["--base", str(small_base), "--out", str(tmp_path / "file" / "x")])
     assert result.exit_code == 2
-    assert result.output.startswith("Error: ")
+    assert "cannot be written: Not a directory" in result.output
