@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from kb_build.errors import StoreError
 from kb_build.schema import NoBase, open_read_only
+from simworlds.how_to_get_bases import how_to_get_again, how_to_get_at
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-_AGAIN = "Build it again: simworlds kb build --force"
 
 
 def open_base(path: Path) -> sqlite3.Connection:
@@ -21,9 +20,9 @@ def open_base(path: Path) -> sqlite3.Connection:
     try:
         return open_read_only(path)
     except FileNotFoundError:
-        raise StoreError(f"{path}: no knowledge base here. Build it first: simworlds kb build") from None
+        raise StoreError(f"{path}: no knowledge base here. {how_to_get_at(path)}") from None
     except NoBase as error:
-        raise StoreError(f"{path}: {error}. {_AGAIN}") from error
+        raise StoreError(f"{path}: {error}. {how_to_get_again(path)}") from error
 
 
 def read_meta(path: Path) -> dict[str, str]:
@@ -32,7 +31,7 @@ def read_meta(path: Path) -> dict[str, str]:
         try:
             return dict(connection.execute("SELECT name, value FROM meta"))
         except sqlite3.Error as error:
-            raise StoreError(f"{path}: damaged ({error}). {_AGAIN}") from error
+            raise StoreError(f"{path}: damaged ({error}). {how_to_get_again(path)}") from error
 
 
 def described(meta: dict[str, str]) -> dict[str, Any]:

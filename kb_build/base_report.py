@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from kb_build.base_file import described, read_meta
 from kb_build.errors import StoreError
-from simworlds.own_command import own_command
+from simworlds.how_to_get_bases import how_to_get
+from simworlds.releases import USUAL
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -62,7 +63,8 @@ def _content(facts: Mapping[str, Any]) -> Iterator[str]:
         yield _row("source", "built without pages (--no-pages)")
     yield _row("summaries", _summaries(facts["summaries"]))
     if warned := facts.get("page_warnings"):
-        yield _row("warnings", f"{len(warned):,} pages carry some; kb info --json lists them")
+        some = "1 page has some" if len(warned) == 1 else f"{len(warned):,} pages have some"
+        yield _row("warnings", f"{some}; kb info --json lists them")
 
 
 def _source(source: Mapping[str, Any]) -> str:
@@ -83,7 +85,7 @@ def _summaries(facts: Mapping[str, Any]) -> str:
 def bases_lines(bases: Sequence[Mapping[str, Any]], home: Path) -> Iterator[str]:
     """Lists the bases, one on a line."""
     if not bases:
-        yield f"No knowledge base in {home} yet. Build one: {own_command()} kb build"
+        yield f"No knowledge base in {home} yet. {how_to_get(USUAL)}"
     for facts in bases:
         if "fault" in facts:
             yield f"unreadable: {facts['fault']}"

@@ -14,7 +14,10 @@ import click
 
 from kb_build.errors import KBBuildError
 from simworlds.errors import UserError
+from simworlds.how_to_get_bases import how_to_get
 from simworlds.operating_system import SYSTEM
+from simworlds.own_command import own_command
+from simworlds.releases import USUAL
 from simworlds.settings import (
     BASE_URL_VARIABLE,
     base_path,
@@ -23,6 +26,7 @@ from simworlds.settings import (
     home_folder,
     summaries_path,
 )
+from simworlds.terminal.output_file import OutputFile
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -118,7 +122,7 @@ def _roles(_context: click.Context, _parameter: click.Parameter, value: str | No
 @click.option("--force", is_flag=True, help="Build even if nothing has changed.")
 @click.option("--offline", is_flag=True, help="Download no documentation.")
 @click.option("--fresh", is_flag=True, help="Download documentation again that was downloaded before.")
-@click.option("--out", type=_PATH, help="Write the base to this file.")
+@click.option("--out", type=OutputFile(), help="Write the base to this file.")
 @reports_errors
 @replaces_files_whole
 def build(version: str | None, **given: Any) -> None:
@@ -130,7 +134,7 @@ def build(version: str | None, **given: Any) -> None:
     if not SYSTEM.limits_processes:
         raise KBBuildError(
             "a base cannot be built on Windows, where the processes that read documentation cannot be held to limits. "
-            "Fetch a ready one (simworlds kb fetch 5.1 --from URL|FILE), or build it in WSL"
+            f"Fetch a ready one ({own_command()} kb fetch {version or USUAL} --from URL|FILE), or build it in WSL"
         )
     from kb_build import pipeline  # noqa: PLC0415 - other commands do without
     from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
@@ -195,8 +199,15 @@ def info(version: str | None, as_json: bool) -> None:
 
 def _base(version: str) -> Path:
     """The file of a version's base, or the file itself where a path is given."""
-    path = Path(version)
-    return path if path.suffix == ".sqlite" else base_path(home_folder(), version)
+    try:
+        return base_path(home_folder(), version)
+    except UserError:
+        path = Path(version)
+        if path.is_file() or path.suffix == ".sqlite":
+            return path
+        raise KBBuildError(
+            f"{version!r} is neither a Blender version, as 5.1, nor the file of a base."
+        ) from None
 
 
 @kb.command()
@@ -221,7 +232,7 @@ def verify(version: str | None, reference: Path | None, live: bool, as_json: boo
 
     bases = list(built_bases(home_folder()).values())
     if version is None and not bases:
-        raise KBBuildError("there is no knowledge base yet. Build one first: simworlds kb build")
+        raise KBBuildError(f"There is no knowledge base yet. {how_to_get(USUAL)}")
     verification = verify_base(_base(version) if version else bases[-1], reference, live=live)
     click.echo(json.dumps(verification.as_json(), indent=2) if as_json else "\n".join(verification.lines()))
     sys.exit(0 if verification.sound else 1)
@@ -229,7 +240,7 @@ def verify(version: str | None, reference: Path | None, live: bool, as_json: boo
 
 @kb.command("export")
 @click.argument("version")
-@click.option("--output", type=_PATH, help="The file to write (default: blender-X.Y.tar.xz, here).")
+@click.option("--output", type=OutputFile(), help="The file to write (default: blender-X.Y.tar.xz, here).")
 @reports_errors
 @replaces_files_whole
 def export_command(version: str, output: Path | None) -> None:
@@ -249,7 +260,7 @@ def export_command(version: str, output: Path | None) -> None:
         exported = export_base(base, target.expanduser().absolute(), progress=progress)
     click.echo(
         f"{exported.path}: Blender {exported.manifest.blender}, {exported.size / 1e6:.1f} MB\n"
-        f"Fetch it: simworlds kb fetch {exported.manifest.minor} --from '{target}#sha256={exported.sha256}'\n"
+        f"Fetch it: {own_command()} kb fetch {exported.manifest.minor} --from '{target}#sha256={exported.sha256}'\n"
         "Pass its notice on with it: the manual's text is CC-BY-SA-4.0, what comes from Blender GPL-3.0-or-later."
     )
 
@@ -296,16 +307,21 @@ def diff_command(old: str, new: str, **given: Any) -> None:
     """Compare two Blenders' APIs.
 
     Lists what NEW has added, removed and changed since OLD. Each is a version, or the path of a Blender
-    executable. A bpy package that is not at hand is installed, 350 MB.
+    executable. Blender itself is asked, not its base: a bpy package that is not at hand is installed, 350 MB.
     """
-    from kb_build.versions.diff import diff, format_diff  # noqa: PLC0415 - only here
+    from kb_build.versions.diff import diff, format_diff, is_under  # noqa: PLC0415 - only here
     from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
     signal.signal(signal.SIGTERM, _terminated)
     with shown_progress() as progress:
-        differences = diff(_ask(old, progress), _ask(new, progress), interface=given["interface"])
-    if given["prefix"]:
-        differences = differences.under(given["prefix"])
+        extracts = _ask(old, progress), _ask(new, progress)
+        differences = diff(*extracts, interface=given["interface"])
+    if prefix := given["prefix"]:
+        if not any(is_under(symbol.path, prefix) for extract in extracts for symbol in extract.symbols):
+            raise KBBuildError(
+                f"neither Blender {differences.old} nor {differences.new} has {prefix}. Write it as bpy.types.Mesh"
+            )
+        differences = differences.under(prefix)
     as_json = given["as_json"]
     click.echo(
         json.dumps(differences.to_json(), indent=2)
@@ -334,7 +350,9 @@ def _ask(name: str, progress: Progress) -> Extract:
 @click.option(
     "--stubs", type=_PATH, help="A folder with type stubs of versions that have no bpy package, each in X.Y."
 )
-@click.option("--out", type=_PATH, help="The file to write (default: the one that SimWorlds came with).")
+@click.option(
+    "--out", type=OutputFile(), help="The file to write (default: the one that SimWorlds came with)."
+)
 @click.option("--force", is_flag=True, help="Write even if the old file has more symbols.")
 @reports_errors
 @replaces_files_whole

@@ -19,6 +19,7 @@ from kb_build.reference_list import WANTED, ReferenceResolution, read_reference,
 from kb_build.schema import FORM_PATH, POSTING_BYTES, UNITS, unpack
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.records import page_from_json, symbol_from_json
+from simworlds.how_to_get_bases import how_to_get_again
 from simworlds.sandbox.errors import ProgramFailed
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ class BaseVerification:
         """The outcome as lines of text; long lists are shortened."""
         yield f"{self.path} (Blender {self.blender})"
         for check in self.checks:
-            yield f"  {'FAULT' if check.faults else 'ok':<6} {check.name}: {check.looked_at:,} looked at"
+            yield f"  {'FAULT' if check.faults else 'ok':<6} {check.name}: {check.looked_at:,} checked"
             yield from (f"           {line}" for line in _shortened(check.faults, "wrong"))
             yield from (f"           {line}" for line in _shortened(check.notes, "worth knowing"))
         if self.reference is not None:
@@ -69,7 +70,7 @@ class BaseVerification:
             for reason, rows in reference.others.items():
                 yield f"         {reason} ({len(rows):,})"
                 yield from (f"           {row}" for row in rows)
-        yield "Sound." if self.sound else "Not sound: build it again with simworlds kb build --force"
+        yield "Sound." if self.sound else f"Not sound. {how_to_get_again(self.path)}"
 
     def as_json(self) -> dict[str, Any]:
         """The outcome as JSON-ready data, complete."""

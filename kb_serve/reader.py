@@ -16,6 +16,7 @@ from kb_build.symbols.object_data import data_class
 from kb_build.symbols.records import Page, PanelCondition, Symbol, page_from_json, symbol_from_json
 from kb_serve.errors import BadQuery, BaseMissing, BaseUnreadable
 from kb_serve.kept_rows import KeptRows
+from simworlds.how_to_get_bases import how_to_get_again, how_to_get_at
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Sequence
@@ -27,7 +28,6 @@ _Value = TypeVar("_Value")
 EXTEND = "__extend__"  # the identifier of the socket at which a node gets more
 PROPERTIES = "bpy.props."  # whose functions scripts import by name
 _UNLIMITED = float("inf")
-_REBUILD = "Rebuild it: simworlds kb build --force"
 
 
 class SymbolEntry(NamedTuple):
@@ -133,11 +133,9 @@ def open_file(path: Path) -> sqlite3.Connection:
     try:
         return open_read_only(path, threads=True)
     except FileNotFoundError:
-        raise BaseMissing(
-            f"{path}: there is no knowledge base here. Build it first: simworlds kb build"
-        ) from None
+        raise BaseMissing(f"{path}: there is no knowledge base here. {how_to_get_at(path)}") from None
     except NoBase as error:
-        raise BaseUnreadable(f"{path}: {error}. {_REBUILD}") from error
+        raise BaseUnreadable(f"{path}: {error}. {how_to_get_again(path)}") from error
 
 
 class BaseReader:
@@ -207,7 +205,7 @@ class BaseReader:
 
     def damaged(self, why: object) -> BaseUnreadable:
         """The error to raise for a file with wrong content."""
-        return BaseUnreadable(f"{self.path}: damaged ({why}). {_REBUILD}")
+        return BaseUnreadable(f"{self.path}: damaged ({why}). {how_to_get_again(self.path)}")
 
     def _record(self, make: Callable[[dict[str, Any]], _Record], data: bytes) -> _Record:
         try:

@@ -12,6 +12,7 @@ from simworlds.errors import UserError
 
 Role = Literal["manual", "guides"]
 ROLES: tuple[Role, ...] = ("manual", "guides")
+OLDEST = "3.1"  # the first Blender with Python 3.10, which what runs in it needs
 USUAL = "5.1"  # where no Blender is in use and none is named: the version that the shipped summaries are of
 
 _TABLE = Path(__file__).resolve().parent.parent / "corpora" / "sources.toml"
@@ -61,6 +62,11 @@ def same_version(asked: str, real: str) -> bool:
 def is_same_minor(one: str, other: str) -> bool:
     """Whether two versions are of the same minor version; text without numbers is of none but its like."""
     return version_key(one)[:2] == version_key(other)[:2]
+
+
+def is_too_old(version: str) -> bool:
+    """Whether a Blender is older than those that SimWorlds can run in."""
+    return version_key(version) < version_key(OLDEST)
 
 
 def releases() -> tuple[Release, ...]:

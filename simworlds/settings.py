@@ -54,6 +54,12 @@ def built_bases(home: Path) -> dict[str, Path]:
     return {f"{major}.{minor}": path for major, minor, path in sorted(found)}
 
 
+def version_of_base(path: Path) -> str:
+    """The minor version of a base that is named as ``base_path`` names it; empty for a file of another name."""
+    match = _BASE.fullmatch(path.name)
+    return f"{int(match[1])}.{int(match[2])}" if match else ""
+
+
 def cache_folder(home: Path) -> Path:
     """What can be made or fetched again: downloads, unpacked archives, pages that were read, digests."""
     return home / "cache"

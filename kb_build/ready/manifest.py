@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from kb_build.errors import ReadyBaseError
 from kb_build.schema import SCHEMA_VERSION
+from simworlds.own_command import own_command
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -82,7 +83,8 @@ def read_manifest(path: Path, origin: str) -> Manifest:
         ) from error
     if manifest.schema_version != SCHEMA_VERSION:
         newer = manifest.schema_version > SCHEMA_VERSION
-        then = "update SimWorlds" if newer else "ask for a newer file, or build the base: simworlds kb build"
+        build = f"{own_command()} kb build {manifest.minor}"
+        then = "update SimWorlds" if newer else f"ask for a newer file, or build it: {build}"
         raise ReadyBaseError(
             f"{origin} has layout {manifest.schema_version}, and this SimWorlds reads {SCHEMA_VERSION}; {then}"
         )

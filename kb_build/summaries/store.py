@@ -110,10 +110,18 @@ class SummaryStore:
         if not other.is_file():
             raise SummaryError(f"No summary store at {other}. Give the path of a colleague's summaries file.")
         theirs = SummaryStore(other)
-        with theirs._connection(read_only=True) as db:
-            version = _version(db)
-            columns = _COLUMNS if version >= SCHEMA_VERSION else _COLUMNS.replace("phrases", "''")
-            rows = db.execute(f"SELECT {columns} FROM summaries").fetchall()  # noqa: S608 - our own names
+        try:
+            with theirs._connection(read_only=True) as db:
+                version = _version(db)
+                columns = _COLUMNS if version >= SCHEMA_VERSION else _COLUMNS.replace("phrases", "''")
+                rows = db.execute(f"SELECT {columns} FROM summaries").fetchall()  # noqa: S608 - our own names
+        except SummaryError as error:
+            if not isinstance(error.__cause__, sqlite3.Error):
+                raise
+            raise SummaryError(
+                f"{other} cannot be read as a colleague's summaries: {error.__cause__}. Give the file "
+                "summaries.sqlite of their SimWorlds folder."
+            ) from error
         return self.add(_summary(row) for row in rows if _acceptable(row))
 
     def count(self) -> int:

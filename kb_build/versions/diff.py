@@ -54,21 +54,22 @@ class Diff:
 
     def under(self, prefix: str) -> Diff:
         """The part whose paths are ``prefix`` or go on from it (``bpy.types.Mesh``, ``bpy.ops``)."""
-
-        def belongs(path: str) -> bool:
-            return path.startswith(prefix) and not path[len(prefix) : len(prefix) + 1].isidentifier()
-
         return Diff(
             self.old,
             self.new,
-            tuple(entry for entry in self.added if belongs(entry.path)),
-            tuple(entry for entry in self.removed if belongs(entry.path)),
-            tuple(change for change in self.changed if belongs(change.path)),
+            tuple(entry for entry in self.added if is_under(entry.path, prefix)),
+            tuple(entry for entry in self.removed if is_under(entry.path, prefix)),
+            tuple(change for change in self.changed if is_under(change.path, prefix)),
         )
 
     def to_json(self) -> dict[str, Any]:
         """The same as JSON-ready data."""
         return asdict(self)
+
+
+def is_under(path: str, prefix: str) -> bool:
+    """Whether a path is ``prefix`` or goes on from it."""
+    return path.startswith(prefix) and not path[len(prefix) : len(prefix) + 1].isidentifier()
 
 
 def diff(old: Extract, new: Extract, *, interface: bool = False) -> Diff:

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import sys
 from contextlib import closing
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from simworlds.errors import UserError
+from simworlds.terminal.output_file import OutputFile
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 _ERROR = 2
 
@@ -26,7 +30,7 @@ _ERROR = 2
 @click.option(
     "--topic", default="", help="Only what belongs to it: a chapter of the manual, as 'rigid body'."
 )
-@click.option("--output", type=click.Path(dir_okay=False, path_type=Path), help="Write it to this file.")
+@click.option("--output", type=OutputFile(), help="Write it to this file.")
 def pack(version: str | None, budget: int, topic: str, output: Path | None) -> None:
     """Write what a model most needs of one Blender version, for clients without MCP.
 

@@ -17,9 +17,20 @@ from simworlds.files import staged_folder
 from simworlds.installed import installed_bpy
 from simworlds.operating_system import SYSTEM
 from simworlds.processes import CommandFailed, run_group
-from simworlds.releases import USUAL, Release, minor_of, release, releases, same_version, version_key
+from simworlds.releases import (
+    OLDEST,
+    USUAL,
+    Release,
+    is_too_old,
+    minor_of,
+    release,
+    releases,
+    same_version,
+    version_key,
+)
 from simworlds.sandbox.errors import NotInstalled, ProgramFailed, RuntimeMissing
 from simworlds.sandbox.program import BOOT, Program
+from simworlds.terminal.text import shortened
 
 Kind = Literal["executable", "environment", "managed"]
 Report = Callable[[str, int, int | None], None]
@@ -27,6 +38,7 @@ Report = Callable[[str, int, int | None], None]
 _NAME_IT = "give its executable with --blender-exe PATH (or BLENDER_EXE=PATH)"
 _INSTALL_SECONDS = 1800.0
 _VERSION_SECONDS = 60.0
+_LONGEST_LINE = 200
 _PASSED_ON = frozenset(
     {"HOME", "PATH", "TMPDIR", "TEMP", "TMP", "TZ", "USER", "LD_LIBRARY_PATH", "SYSTEMROOT"}
 )
@@ -160,13 +172,20 @@ def executable_version(executable: Path) -> str:
     output = (done.stdout + done.stderr).decode(errors="replace")
     match = re.search(r"^Blender (\d+\.\d+\.\d+)", output, re.MULTILINE)
     if match is None:
-        raise RuntimeMissing(f"{executable} is not Blender: --version printed {output.strip()[:300]!r}")
+        first = next(iter(output.strip().splitlines()), "nothing")
+        raise RuntimeMissing(
+            f"{executable} is not Blender: with --version it printed: {shortened(first, _LONGEST_LINE)}"
+        )
     return match[1]
 
 
 def _managed(wanted: str, runtimes: Path, progress: Report | None, *, install: bool) -> Runtime:
     entry = release(wanted)
     if entry is None:
+        if is_too_old(wanted):
+            raise RuntimeMissing(
+                f"Blender {wanted} is older than {OLDEST}, the oldest that SimWorlds can run in"
+            )
         known = ", ".join(row.minor for row in releases())
         raise RuntimeMissing(
             f"there is no bpy package for Blender {wanted} (only for {known}); install that Blender and "

@@ -144,7 +144,7 @@ def test_info_of_a_damaged_base_says_what_to_do(small: Built) -> None:
     small.path.write_bytes(b"SQLite format 3\x00" + b"\x07" * 5000)
     done = run(small.home, "kb", "info", small.minor)
     assert done.returncode == 2
-    assert "simworlds kb build --force" in done.stdout
+    assert f"simworlds kb build {small.minor} --force" in done.stdout
     assert "unreadable" in run(small.home, "kb", "info").stdout
 
 
@@ -195,6 +195,9 @@ def test_two_blenders_are_compared(small: Built) -> None:
     assert [one["path"] for one in found["removed"]] == ["bpy.types.Mesh.corners"]
     assert [one["path"] for one in found["added"]] == ["bpy.types.Mesh.vertices"]
     assert found["changed"] == []
+    nowhere = run(small.home, *words[:-1], "bpy.types.Meshes")
+    assert (nowhere.returncode, nowhere.stdout) == (2, "")
+    assert "has bpy.types.Meshes" in nowhere.stderr
 
 
 @pytest.mark.parametrize(
@@ -205,10 +208,19 @@ def test_two_blenders_are_compared(small: Built) -> None:
         (("kb", "build", "5.1", "--blender-exe", "/nowhere"), "no Blender executable at /nowhere"),
         (("kb", "build", "--require", "pictures"), "give manual, guides or both"),
         (("kb", "build", "--jobs", "0"), "--jobs"),
-        (("kb", "info", "5.1"), "no knowledge base here"),
-        (("kb", "verify"), "there is no knowledge base yet"),
-        (("kb", "verify", "../../etc/passwd"), "not a Blender version"),
+        (("kb", "build", "2.79"), "Blender 2.79 is older than 3.1"),
+        (("kb", "info", "4.5"), "kb build 4.5 (a minute;"),
+        (("kb", "verify"), "There is no knowledge base yet. Build it: "),
+        (
+            ("kb", "verify", "../../nowhere/passwd"),
+            "neither a Blender version, as 5.1, nor the file of a base",
+        ),
+        (("kb", "verify", "/etc/passwd"), "/etc/passwd: not readable as a knowledge base"),
+        (("kb", "export", "4.5", "--output", "/nowhere/x"), "There is no folder /nowhere."),
+        (("kb", "export", "4.5", "--output", "/"), "is a directory"),
+        (("kb", "pack", "--output", "/nowhere/x.md"), "There is no folder /nowhere."),
         (("kb", "merge-summaries", "/nowhere"), "does not exist"),
+        (("kb", "merge-summaries", "/etc/passwd"), "/etc/passwd cannot be read as a colleague's summaries"),
         (("kb", "diff", "nonsense", "5.1"), "'nonsense' is not a Blender version"),
     ],
 )

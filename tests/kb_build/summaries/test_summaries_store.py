@@ -138,7 +138,7 @@ def test_a_damaged_file_is_named_with_what_to_do(store, content):
     store.path.write_bytes(content)
     with pytest.raises(SummaryError, match=r"summaries #1\?\.sqlite cannot be used.*move it away"):
         store.get(["x"])
-    with pytest.raises(SummaryError, match="cannot be used"):
+    with pytest.raises(SummaryError, match="cannot be read as a colleague's summaries"):
         SummaryStore(store.path.with_name("mine.sqlite")).merge(store.path)
 
 

@@ -145,7 +145,10 @@ def test_accepts_the_folder_of_an_executable(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("body", "message"),
-    [("echo hello", "is not Blender"), ("exit 7", "is not Blender")],
+    [
+        ("echo hello; echo more", "is not Blender: with --version it printed: hello$"),
+        ("exit 7", "printed: nothing$"),
+    ],
 )
 def test_names_a_program_that_is_not_blender(tmp_path: Path, body: str, message: str) -> None:
     with pytest.raises(RuntimeMissing, match=message):
@@ -158,8 +161,14 @@ def test_names_a_missing_executable(tmp_path: Path) -> None:
 
 
 def test_unknown_version_lists_versions_with_a_package(tmp_path: Path) -> None:
-    with pytest.raises(RuntimeMissing, match=r"(?s)2\.79.*4\.2.*5\.2.*BLENDER_EXE"):
+    with pytest.raises(RuntimeMissing, match=r"(?s)9\.9.*4\.2.*5\.2.*BLENDER_EXE"):
+        find_runtime("9.9", home=tmp_path)
+
+
+def test_no_installation_is_advised_of_a_blender_that_is_too_old(tmp_path: Path) -> None:
+    with pytest.raises(RuntimeMissing, match=r"2\.79 is older than 3\.1") as refused:
         find_runtime("2.79", home=tmp_path)
+    assert "BLENDER_EXE" not in str(refused.value)
 
 
 def test_refuses_an_invalid_version(tmp_path: Path) -> None:
