@@ -168,11 +168,14 @@ def _one_version(checking: _Checking, base: Path, cache: ResultCache | None) -> 
     from kb_check.formats.printing import print_report  # noqa: PLC0415 - not for --help
     from kb_check.project import Project  # noqa: PLC0415
     from kb_check.run import Run  # noqa: PLC0415
+    from kb_serve.in_use import tell_of_other  # noqa: PLC0415
     from kb_serve.reader import BaseReader  # noqa: PLC0415
 
     with closing(BaseReader(base)) as reader:
         meta = reader.meta
     inputs, choices = checking.inputs, checking.choices
+    if not (choices["blender"] or checking.configuration.blender):
+        tell_of_other(meta["blender"])
     project = Project(base, meta["fingerprint"], cache, checking.jobs)
     run = Run(project, checking.configuration, inputs.groups, inputs.faults)
     unsafe = choices["unsafe_fixes"]

@@ -94,8 +94,11 @@ class _Work:
 def _migrate(paths: tuple[Path, ...], choices: dict[str, Any]) -> int:
     from kb_check.migrate.chosen_versions import read_versions  # noqa: PLC0415 - not for --help
     from kb_check.migrate.report import Migration, markdown  # noqa: PLC0415
+    from kb_serve.in_use import tell_of_other  # noqa: PLC0415
 
     versions = read_versions(choices["target"], choices["source"], choices["keep"], home_folder())
+    if not choices["target"]:
+        tell_of_other(versions.blender)
     report = _report_place(paths[0]) if choices["write"] else None
     work = _Work(Migration(versions))
     _migrate_groups(work, _groups(paths, work.faults))

@@ -10,6 +10,7 @@ from mcp_types import CallToolResult, TextContent, Tool
 from pydantic import BaseModel, ConfigDict, Field
 
 from kb_serve.errors import BadQuery
+from kb_serve.query_limits import LEAST_TOKENS, MAX_TOKENS
 from kb_serve.service import readable
 from kb_serve.tool import parsed, reading_tool
 
@@ -33,9 +34,12 @@ class CheckArguments(BaseModel):
 
     model_config = ConfigDict(extra="forbid", coerce_numbers_to_str=True, title=NAME)
 
-    code: str = Field(description="A script, or a piece of one.")
+    # Checked where the code is, in words of its own.
+    code: str = Field(
+        description="A script, or a piece of one.", json_schema_extra={"maxLength": LONGEST_CODE}
+    )
     blender: str | None = Field(default=None, description="Default: the version in use.")
-    max_tokens: int = Field(default=1500, ge=150, description="Of the answer.")
+    max_tokens: int = Field(default=MAX_TOKENS, ge=LEAST_TOKENS, description="Of the answer.")
 
 
 class CheckFinding(BaseModel):

@@ -49,7 +49,7 @@ class Bases:
     ) -> None:
         """``default`` is the version to use where a caller names none; ``clock`` gives seconds."""
         self.home = home
-        self._default = default
+        self.default = default
         self._blender_exe = blender_exe
         self._clock = clock
         self._opened: dict[Path, _Opened] = {}
@@ -76,8 +76,8 @@ class Bases:
     def wanted_but_missing(self) -> str | None:
         """The default version if it has no base, ``""`` where no version has one, None where nothing is missing."""
         built = self.built()
-        if self._default is not None:
-            return None if minor_of(self._default) in built else self._default
+        if self.default is not None:
+            return None if minor_of(self.default) in built else self.default
         return None if built else ""
 
     @cached_property
@@ -94,7 +94,7 @@ class Bases:
 
     def file(self, version: str | None = None) -> Path:
         """The file of that base, chosen as ``pick`` does. Raises BaseMissing."""
-        version = version or self._default
+        version = version or self.default
         built = self.built()
         if version is None and len(built) > 1 and self.in_use is not None:
             in_use = minor_of(self.in_use)

@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING
 
 import click
 
+from kb_serve.query_limits import LEAST_TOKENS, LIMIT, LONGEST_QUERY, MAX_TOKENS
 from simworlds.errors import UserError
+from simworlds.releases import minor_of
 from simworlds.settings import home_folder
 from simworlds.terminal.markdown import print_markdown
 
@@ -24,8 +26,9 @@ if TYPE_CHECKING:
 
 _NOTHING_FOUND = 1
 _ERROR = 2
-_LIMIT = 8
+_STDIN = "-"
 _PORT = 8765
+_LONGEST_BYTES = 4 * (LONGEST_QUERY + 1)
 _TYPED = click.core.ParameterSource.COMMANDLINE
 _BLENDER = click.option("--blender", metavar="VERSION", help="Blender version. Default: the one in use.")
 
@@ -33,12 +36,22 @@ _BLENDER = click.option("--blender", metavar="VERSION", help="Blender version. D
 @click.command()
 @click.argument("query", nargs=-1, required=True)
 @_BLENDER
-@click.option("--limit", type=int, default=_LIMIT, show_default=True, help="Maximum number of hits.")
 @click.option(
-    "--max-tokens", type=int, default=1500, show_default=True, help="Maximum length of the answer, in tokens."
+    "--limit", type=click.IntRange(1), default=LIMIT, show_default=True, help="Maximum number of hits."
 )
 @click.option(
-    "--part", type=int, default=1, show_default=True, help="The part of a long answer to begin with."
+    "--max-tokens",
+    type=click.IntRange(LEAST_TOKENS),
+    default=MAX_TOKENS,
+    show_default=True,
+    help="Maximum length of the answer, in tokens.",
+)
+@click.option(
+    "--part",
+    type=click.IntRange(1),
+    default=1,
+    show_default=True,
+    help="The part of a long answer to begin with.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the answer as JSON.")
 @click.option("--raw", is_flag=True, help="Print the whole record of the best hit as JSON.")
@@ -54,6 +67,7 @@ def docs(  # noqa: PLR0913 - one for each option
 ) -> None:
     """Query the knowledge base with a name, an expression, an error message, a question or a topic.
 
+    QUERY is its words; - reads it from standard input.
     Prints Markdown. Exit code: 0 when something was found, 1 when nothing was, 2 on errors.
     """
     if as_json and raw:
@@ -61,40 +75,59 @@ def docs(  # noqa: PLR0913 - one for each option
     # The process ends soon: collecting garbage would only take time.
     gc.disable()
     try:
-        from kb_serve.service import readable  # noqa: PLC0415 - not for --help
+        from kb_serve.in_use import note_on_base  # noqa: PLC0415 - not for --help
+        from kb_serve.service import answer_below, checked_query  # noqa: PLC0415
 
         with closing(_bases(blender)) as bases:
             base = bases.pick()
-            answer = base.query(
-                readable(" ".join(query)),
+            version = base.meta.get("blender", "")
+            note = "" if blender else note_on_base(version)
+            answer = answer_below(
+                note,
+                base,
+                checked_query(_asked(query)),
                 limit=limit,
                 max_tokens=max_tokens,
                 part=part,
                 command="" if as_json else _command(blender, limit),
             )
-            is_found = _print_raw(base, answer) if raw else _print_answer(answer, as_json=as_json)
+            if raw:
+                if note:
+                    click.echo(note, err=True)
+                is_found = _print_raw(base, answer)
+            else:
+                _print_answer(answer, version, as_json=as_json)
+                # Of what is gone without a successor, its own notes say all.
+                is_found = answer.kind != "none" or any(said != note for said in answer.notes)
     except UserError as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)
     sys.exit(0 if is_found else _NOTHING_FOUND)
 
 
+def _asked(words: tuple[str, ...]) -> str:
+    """The query: words, or what standard input has."""
+    if words != (_STDIN,):
+        return " ".join(words)
+    # Of longer input, a part is enough to refuse it.
+    return sys.stdin.buffer.read(_LONGEST_BYTES).decode(errors="replace")
+
+
 def _command(blender: str | None, limit: int) -> str:
     """The command with the options that decide what an answer is."""
     from simworlds.own_command import own_command  # noqa: PLC0415 - not for --help
 
-    options = (f" --blender {blender}" if blender else "", f" --limit {limit}" if limit != _LIMIT else "")
+    options = (f" --blender {blender}" if blender else "", f" --limit {limit}" if limit != LIMIT else "")
     return f"{own_command()} docs{''.join(options)}"
 
 
-def _print_answer(answer: DocsAnswer, *, as_json: bool) -> bool:
+def _print_answer(answer: DocsAnswer, version: str, *, as_json: bool) -> None:
     if as_json:
         from dataclasses import asdict  # noqa: PLC0415 - only for --json
 
-        click.echo(json.dumps(asdict(answer), ensure_ascii=False, indent=2))
+        click.echo(json.dumps({**asdict(answer), "blender": version}, ensure_ascii=False, indent=2))
     else:
         print_markdown(answer.text)
-    return answer.kind != "none" or bool(answer.notes)  # of what is gone without a successor, notes say all
 
 
 def _print_raw(base: KnowledgeBase, answer: DocsAnswer) -> bool:
@@ -152,13 +185,23 @@ def serve(  # noqa: PLR0913 - one for each option
     address is loopback, clients must send a token: Authorization: Bearer …
     """
     for_http = [
-        name for name in ("host", "port", "allow_host") if context.get_parameter_source(name) is _TYPED
+        name
+        for name in ("host", "port", "token", "allow_host")
+        if context.get_parameter_source(name) is _TYPED
     ]
     if for_http and not over_http:
-        raise click.UsageError("--host, --port and --allow-host go with --http.")
+        raise click.UsageError("--host, --port, --token and --allow-host go with --http.")
     # Nothing that is loaded is garbage: looking for it would take a tenth of the start-up.
     gc.disable()
-    service = _service(blender, blender_exe, rebuild=not no_rebuild)
+    try:
+        if blender is not None:
+            minor_of(blender)
+        if blender_exe is not None:
+            blender_exe = _executable(blender_exe)
+        service = _service(blender, blender_exe, rebuild=not no_rebuild)
+    except UserError as error:
+        click.echo(f"Error: {error}", err=True)
+        sys.exit(_ERROR)
     try:
         from kb_serve.server import make_app, make_server  # noqa: PLC0415 - loads the MCP package
 
@@ -166,7 +209,11 @@ def serve(  # noqa: PLR0913 - one for each option
             from simworlds.mcp_transport.http import Address, run_http  # noqa: PLC0415 - not for stdio
 
             _loaded()
-            run_http(partial(make_app, service), Address(host, port, token or "", allow_host), "blender_docs")
+            run_http(
+                partial(make_app, service),
+                Address(host, port, token or "", allow_host),
+                "blender_docs and blender_check",
+            )
         else:
             from simworlds.mcp_transport.stdio import run_stdio  # noqa: PLC0415 - not for HTTP
 
@@ -177,6 +224,13 @@ def serve(  # noqa: PLR0913 - one for each option
         sys.exit(_ERROR)
     finally:
         service.bases.close()
+
+
+def _executable(path: Path) -> Path:
+    """The program of a Blender. Raises RuntimeMissing where none is."""
+    from simworlds.sandbox.runtime import find_runtime  # noqa: PLC0415 - most name none
+
+    return find_runtime(None, home=home_folder(), blender_exe=path).executable
 
 
 def _loaded() -> None:

@@ -7,8 +7,9 @@ from importlib import import_module
 from threading import Lock
 from typing import TYPE_CHECKING, Self
 
-from kb_serve.answer.composer import LIMIT, MAX_TOKENS, AnswerComposer
+from kb_serve.answer.composer import AnswerComposer
 from kb_serve.locate import find_base
+from kb_serve.query_limits import LIMIT, MAX_TOKENS
 from kb_serve.reader import BaseReader
 
 if TYPE_CHECKING:

@@ -19,9 +19,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NoReturn
 
+from kb_serve.in_use import how_to_build, is_newer, other_in_use
 from simworlds.errors import UserError
+from simworlds.how_to_get_bases import how_to_get
 from simworlds.operating_system import SYSTEM
-from simworlds.own_command import own_command
 from simworlds.releases import USUAL, is_same_minor, minor_of, release, version_key
 from simworlds.settings import ready_base_source
 from simworlds.terminal.lines import write_line
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
 _ELSEWHERE = 3  # another process is building, or fetching
 _LONGEST_REASON = 300
-_ACCEPTED = re.compile(r"(?:simworlds )?kb build (\d{1,2}\.\d{1,2})")
+_WANTED = re.compile(r"(?:simworlds )?kb (build|fetch) (\d{1,2}\.\d{1,2})(?:\.\d{1,3})?")
 
 State = Literal["idle", "running", "failed"]
 Doing = Literal["built", "fetched"]
@@ -87,20 +88,21 @@ class Upkeep:
             self._process.terminate()
 
     def note(self, meta: Mapping[str, str], asked: str | None) -> str:
-        """The note for an answer from the base with this meta: empty, or that Blender is newer.
+        """The note for an answer from the base with this meta: empty, or that another Blender is in use.
 
-        ``asked`` is the version that the caller named, if any: then newer versions do not matter.
+        ``asked`` is the version that the caller named, if any: then other versions do not matter.
         """
         have, in_use = meta.get("blender", ""), self.bases.in_use
-        if in_use is None or not _newer(in_use, have) or (asked and not is_same_minor(in_use, have)):
+        note = other_in_use(have, in_use)
+        if in_use is None or not note or (asked and not is_same_minor(in_use, have)):
             return ""
         if self.state == "failed":
             then = f"Building its base failed: {self.reason}"
-        elif self.enabled:
+        elif self.state == "running" or (self.enabled and is_newer(in_use, have)):
             then = "Its base is being built in the background; until then, answers come from this one."
         else:
-            then = f"Build its base: {own_command()} kb build {minor_of(in_use)}"
-        return f"This is Blender {have}'s knowledge base, but Blender {in_use} is in use. {then}"
+            then = how_to_build(in_use, self.blender_exe)
+        return f"{note} {then}"
 
     def offer(self, version: str | None) -> str:
         """The query that has the base of a version built here, where this can be done; empty elsewhere."""
@@ -113,15 +115,26 @@ class Upkeep:
         return self.enabled and SYSTEM.limits_processes and self.state != "running"
 
     def accept(self, query: str) -> str:
-        """Builds a base in the background if the query takes up the offer. Returns its version, or nothing."""
-        match = _ACCEPTED.fullmatch(query.strip())
-        if match is None or not self._may_build() or minor_of(match[1]) in self.bases.built():
+        """What a query that asks for a base is told; empty for any other query.
+
+        A base that is missing is built in the background, if that can be done.
+        """
+        match = _WANTED.fullmatch(query.strip())
+        if match is None:
             return ""
+        doing, version = match[1], minor_of(match[2])
+        if version in self.bases.built():
+            return f'Blender {version} has its knowledge base already. Ask it with blender="{version}".'
+        what = f"There is no knowledge base for Blender {version}."
+        if doing == "build" and self.offer(version):
+            self._build(version)
+        return f"{what} {self.missing_note(version) or how_to_get(version)}"
+
+    def _build(self, version: str) -> None:
         self._accepted = True
-        self._job = job = self._building(minor_of(match[1]), {})
+        self._job = job = self._building(version, {})
         self.state = "running"
         threading.Thread(target=self._perform, args=(job,), name="build", daemon=True).start()
-        return job.version
 
     def missing_note(self, version: str | None) -> str:
         """What is done about a missing base of this version (None: of whichever is wanted); empty if nothing is."""
@@ -152,7 +165,7 @@ class Upkeep:
         built = self.bases.built()
         if minor_of(in_use) in built:
             meta = self.bases.pick(minor_of(in_use)).meta
-            return meta if _newer(in_use, meta.get("blender", "")) else None
+            return meta if is_newer(in_use, meta.get("blender", "")) else None
         older = [version for version in built if version_key(version) < version_key(in_use)]
         return self.bases.pick(older[-1]).meta if older else None
 
@@ -202,10 +215,6 @@ class Upkeep:
             last = line.decode(errors="replace").strip() or last
             self.progress = last.removesuffix("...").strip()[:_LONGEST_REASON]
         return last
-
-
-def _newer(in_use: str, have: str) -> bool:
-    return bool(version_key(have)) and version_key(in_use) > version_key(have)
 
 
 def _as_before(meta: Mapping[str, str], version: str) -> list[str]:

@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from kb_serve.errors import BadQuery, BaseMissing, KBServeError
+from kb_serve.query_limits import LEAST_TOKENS, LONGEST_QUERY
 
 if TYPE_CHECKING:
     from kb_build.symbols.records import Page, Symbol
@@ -16,12 +17,36 @@ if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.rebuild import Upkeep
 
-LONGEST_QUERY = 20_000
+
+def readable(text: str) -> str:
+    """A text without lone surrogates, which undecodable input leaves."""
+    return text.encode(errors="replace").decode()
 
 
-def readable(query: str) -> str:
-    """The query without lone surrogates, which undecodable input leaves."""
-    return query.encode(errors="replace").decode()
+def checked_query(query: str) -> str:
+    """The query, readable. Raises BadQuery for one that is too long."""
+    if len(query) > LONGEST_QUERY:
+        raise BadQuery(
+            f"The query has {len(query):,} characters, more than the limit of {LONGEST_QUERY:,}. Shorten it."
+        )
+    return readable(query)
+
+
+def answer_below(  # noqa: PLR0913 - those of a query
+    note: str, base: KnowledgeBase, query: str, *, limit: int, max_tokens: int, part: int, command: str = ""
+) -> DocsAnswer:
+    """A base's answer to a query, below a note if there is one and room for it. Raises KBServeError."""
+    if not note:
+        return base.query(query, limit=limit, max_tokens=max_tokens, part=part, command=command)
+    from kb_serve.answer.budget import tokens  # noqa: PLC0415 - loaded with the base
+
+    lead = f"> {note}\n\n"
+    room = max_tokens - tokens(lead) - 1
+    has_room = room >= LEAST_TOKENS
+    most = room if has_room else max_tokens
+    answer = base.query(query, limit=limit, max_tokens=most, part=part, command=command)
+    text = lead + answer.text if has_room and part == 1 else answer.text
+    return replace(answer, text=text, notes=(note, *answer.notes))
 
 
 class Service:
@@ -43,27 +68,12 @@ class Service:
         self, query: str, *, blender: str | None, limit: int, max_tokens: int, part: int
     ) -> tuple[DocsAnswer, str]:
         """The answer, and the full version of the Blender that it holds for. Raises KBServeError."""
-        if len(query) > LONGEST_QUERY:
-            raise BadQuery(
-                f"The query has {len(query):,} characters, more than the limit of {LONGEST_QUERY:,}. Shorten it."
-            )
-        query = readable(query)
-        if accepted := self.upkeep.accept(query):
-            what = f"There is no knowledge base for Blender {accepted} yet."
-            raise BaseMissing(what, self.upkeep.missing_note(accepted))
+        query = checked_query(query)
+        if told := self.upkeep.accept(query):
+            raise BaseMissing(told)
         base, note = self.base(blender)
-        version = base.meta.get("blender", "")
-        if not note:
-            return base.query(query, limit=limit, max_tokens=max_tokens, part=part), version
-        from kb_serve.answer.budget import tokens  # noqa: PLC0415
-        from kb_serve.answer.composer import LEAST_TOKENS  # noqa: PLC0415 - loaded with the base
-
-        lead = f"> {note}\n\n"
-        room = max_tokens - tokens(lead) - 1
-        has_room = room >= LEAST_TOKENS
-        answer = base.query(query, limit=limit, max_tokens=room if has_room else max_tokens, part=part)
-        text = lead + answer.text if has_room and part == 1 else answer.text
-        return replace(answer, text=text, notes=(note, *answer.notes)), version
+        answer = answer_below(note, base, query, limit=limit, max_tokens=max_tokens, part=part)
+        return answer, base.meta.get("blender", "")
 
     def symbol(self, blender: str, path: str) -> Symbol | None:
         """The raw record of an identifier. Raises KBServeError."""
@@ -85,7 +95,7 @@ class Service:
         return {"version": version, "blender": meta.get("blender", ""), "built_at": meta.get("built_at", "")}
 
     def base(self, blender: str | None) -> tuple[KnowledgeBase, str]:
-        """The base of a version, and a note if the Blender in use is newer. Raises KBServeError."""
+        """The base of a version, and a note if another Blender is in use. Raises KBServeError."""
         try:
             base = self.bases.pick(blender)
         except BaseMissing as error:
@@ -96,4 +106,4 @@ class Service:
                 how = f"Or ask blender_docs {offer!r}: then it is fetched and built here, in the background."
                 raise BaseMissing(str(error), how) from error
             raise
-        return base, self.upkeep.note(base.meta, blender)
+        return base, self.upkeep.note(base.meta, blender or self.bases.default)

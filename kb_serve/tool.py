@@ -10,6 +10,7 @@ from mcp_types import CallToolResult, TextContent, Tool, ToolAnnotations
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from kb_serve.errors import BadQuery
+from kb_serve.query_limits import LEAST_TOKENS, LIMIT, LONGEST_QUERY, MAX_TOKENS
 from simworlds.schemas.faults import describe_faults
 from simworlds.schemas.json_schema import schema_of
 
@@ -22,7 +23,7 @@ _Arguments = TypeVar("_Arguments", bound=BaseModel)
 
 DESCRIPTION = """\
 Look up the Python API and manual of the Blender in use: exact schemas (types, defaults, ranges, enum values, \
-units), operators with their arguments, node sockets, manual pages. Answers come from that Blender itself. \
+units), operators with their arguments, node sockets, manual pages. Facts come from that Blender itself. \
 Query before you write a name you are not sure of: what you remember may belong to another version.
 
 `query`, one thing at a time:
@@ -42,13 +43,16 @@ class DocsArguments(BaseModel):
 
     model_config = ConfigDict(extra="forbid", coerce_numbers_to_str=True, title="blender_docs")
 
-    query: str = Field(description="One name, question or topic.")
+    # Checked where the query is answered, in words of its own.
+    query: str = Field(
+        description="One name, question or topic.", json_schema_extra={"maxLength": LONGEST_QUERY}
+    )
     blender: str | None = Field(
         default=None,
         description="Default: the version in use.",
     )
-    limit: int = Field(default=8, ge=1, description="Hits at most.")
-    max_tokens: int = Field(default=1500, ge=150, description="Of the answer, at most.")
+    limit: int = Field(default=LIMIT, ge=1, description="Hits at most.")
+    max_tokens: int = Field(default=MAX_TOKENS, ge=LEAST_TOKENS, description="Of the answer, at most.")
     part: int = Field(default=1, ge=1, description="The part to begin with.")
 
 
@@ -89,7 +93,7 @@ def tool() -> Tool:
 def reading_tool(
     name: str, title: str, description: str, arguments: type[BaseModel], reply: type[BaseModel]
 ) -> Tool:
-    """A tool that changes nothing, and gives the same for the same question."""
+    """A tool that is marked as one that only reads; then the protocol's other hints say nothing more."""
     schema = schema_of(arguments)
     schema.pop("description", None)  # the tool has its own
     return Tool(
@@ -98,13 +102,7 @@ def reading_tool(
         description=description,
         input_schema=schema,
         output_schema=schema_of(reply),
-        annotations=ToolAnnotations(
-            title=title,
-            read_only_hint=True,
-            destructive_hint=False,
-            idempotent_hint=True,
-            open_world_hint=False,
-        ),
+        annotations=ToolAnnotations(title=title, read_only_hint=True),
     )
 
 

@@ -26,7 +26,7 @@ _ERROR = 2
 _PORT = 8766
 _SIGNAL_SECONDS = 1.5  # clients kill two seconds after they have asked to end
 _TYPED = click.core.ParameterSource.COMMANDLINE
-_ONLY_HTTP = ("host", "port", "allow_host", "sessions", "idle")
+_ONLY_HTTP = ("host", "port", "token", "allow_host", "sessions", "idle")
 _ONLY_AS = ("timeout", "screenshots")
 _ADDON = "blender-mcp"
 _ASSETS = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=Path)

@@ -6,7 +6,22 @@ from pathlib import Path
 
 import click
 
-VERSION = click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's.")
+from simworlds.errors import UserError
+from simworlds.releases import minor_of
+
+
+def _checked(_context: click.Context, _parameter: click.Parameter, value: str | None) -> str | None:
+    if value is not None:
+        try:
+            minor_of(value)
+        except UserError as error:
+            raise click.BadParameter(str(error)) from error
+    return value
+
+
+VERSION = click.option(
+    "--blender", metavar="VERSION", callback=_checked, help="Blender version. Default: this environment's."
+)
 EXECUTABLE = click.option(
     "--blender-exe",
     type=click.Path(path_type=Path),

@@ -55,4 +55,6 @@ def _type(field: Mapping[str, Any]) -> str:
     if "enum" in field:
         return " or ".join(f"`{value}`" for value in field["enum"])
     bounds = f", at least {field['minimum']}" if "minimum" in field else ""
+    if "maxLength" in field:
+        bounds += f" (at most {field['maxLength']:,} characters)"
     return str(field.get("type", "any")) + bounds

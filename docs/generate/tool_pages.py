@@ -26,12 +26,22 @@ if TYPE_CHECKING:
     from agents.blender.tools.base import BlenderTool
 
 
+_CHANGES = (
+    "Both tools answer from knowledge bases, and change nothing of yours. Clients are told so by one hint, "
+    "`readOnlyHint`. One query does more: `kb build 5.1`, asked of `blender_docs`, builds the base of a version that "
+    "has none. It does so in the background, in SimWorlds' own folder, and fetches the `bpy` package first where that "
+    "Blender is not at hand (350 MB). `simworlds serve --no-rebuild` turns this off."
+)
+
+
 def docs_tool_page() -> str:
     """The tools of the knowledge base, their arguments and results, and the resources, as Markdown."""
     return page(
         "# MCP tools and resources",
         GENERATED,
         f"The server's instructions to clients: {INSTRUCTIONS}",
+        "## What the tools change",
+        _CHANGES,
         *(part for entry in listing() for part in _tool(entry)),
         "## Errors",
         "Errors (a call that cannot be answered, a version that was not built, a damaged base) are results marked as "
@@ -43,17 +53,9 @@ def docs_tool_page() -> str:
 
 def _tool(entry: Tool) -> Iterator[str]:
     assert entry.description
-    assert entry.annotations
     assert entry.output_schema
-    hints = {
-        "read-only": entry.annotations.read_only_hint,
-        "idempotent": entry.annotations.idempotent_hint,
-        "destructive": entry.annotations.destructive_hint,
-        "open world": entry.annotations.open_world_hint,
-    }
     yield f"## `{entry.name}`"
     yield entry.description
-    yield "Hints: " + ", ".join(f"{name} {'yes' if value else 'no'}" for name, value in hints.items()) + "."
     yield "### Arguments"
     yield schema_table(entry.input_schema)
     yield "### Result"

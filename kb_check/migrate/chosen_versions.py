@@ -25,10 +25,11 @@ if TYPE_CHECKING:
 class Versions:
     """Minor versions: ``source`` is None where the code tells it, ``keep`` are older than the target, oldest first.
 
-    ``base`` is the target's, ``bases`` are all that there are.
+    ``base`` is the target's, of the full version ``blender``; ``bases`` are all that there are.
     """
 
     base: Path
+    blender: str
     target: str
     source: str | None
     keep: tuple[str, ...]
@@ -66,7 +67,7 @@ def read_versions(target: str | None, source: str | None, keep: str, home: Path)
         with closing(Bases(home)) as bases:
             base = bases.file()
     with closing(BaseReader(base)) as reader:
-        to = minor_of(reader.meta["minor"])
+        blender, to = reader.meta["blender"], minor_of(reader.meta["minor"])
     if source:
         source = minor_of(source)
         if version_key(source) > version_key(to):
@@ -79,4 +80,4 @@ def read_versions(target: str | None, source: str | None, keep: str, home: Path)
             f"--keep {','.join(newer)} is newer than {to}, the Blender to migrate to. Give a newer --to, or "
             "leave it out."
         )
-    return Versions(base, to, source, tuple(version for version in kept if version != to), built_bases(home))
+    return Versions(base, blender, to, source, tuple(version for version in kept if version != to), built_bases(home))

@@ -21,6 +21,7 @@ from kb_serve.answer.practice import Practice
 from kb_serve.answer.render import MarkdownRenderer
 from kb_serve.answer.topic_overview import Topics
 from kb_serve.errors import BadQuery
+from kb_serve.query_limits import LEAST_TOKENS, LIMIT, MAX_LIMIT
 from kb_serve.rank.merging import SURE, QueryRanker, Ranking
 from kb_serve.rank.ranked_id import RankedId
 from kb_serve.recognise.several import parts_of
@@ -33,10 +34,6 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.several import QuestionPart
 
-LIMIT = 8
-MAX_LIMIT = 50
-MAX_TOKENS = 1_500
-LEAST_TOKENS = 150
 _EXCERPT_TOKENS = 300  # of the best of several candidates
 _LEAST_SAID = 30
 _KNOWN_OF = 3  # hits for a description among which what one has to know of them is looked for

@@ -77,7 +77,7 @@ def paged(query: str, draft: Draft, max_tokens: int, part: int, command: str) ->
     """As many parts of a draft as fit, from ``part`` on; what is left, and how to get it. Raises BadQuery."""
     parts = draft.parts
     if part > len(parts):
-        raise BadQuery(f"part={part} does not exist: this answer has {len(parts)} part(s).")
+        raise BadQuery(f"part={part} does not exist: this answer has {_counted(len(parts))}.")
     text, after = shown(parts, part - 1, max_tokens)
     if after == len(parts):
         return DocsAnswer(draft.kind, text, draft.hits, draft.notes, part, len(parts))
@@ -85,6 +85,10 @@ def paged(query: str, draft: Draft, max_tokens: int, part: int, command: str) ->
     call = next_call(query, after + 1, command)
     footer = _footer(call, range(part, after + 1), len(parts), names_of(parts[after:]))
     return DocsAnswer(draft.kind, f"{text}\n\n{footer}", draft.hits, draft.notes, part, len(parts), after + 1)
+
+
+def _counted(parts: int) -> str:
+    return f"{parts} parts" if parts > 1 else "1 part"
 
 
 def _footer(call: str, seen: range, parts: int, left: Sequence[str]) -> str:

@@ -19,6 +19,7 @@ _SHORT_PAGE = 80  # letters
 _OUTLINE = 16  # sections that a heading lists
 # What the manual says of a setting may be true of one engine only.
 ENGINES = {"render/eevee/": "EEVEE", "render/cycles/": "Cycles", "render/workbench/": "Workbench"}
+_BY_MODEL = "AI summary: "  # what a language model wrote is not Blender's own word
 _BULLET = re.compile(r"\s*- \*\*.+?\*\*\s*")
 
 
@@ -99,9 +100,11 @@ def said_of(page: PageEntry, reader: BaseReader) -> str:
 
 
 def own_summary(page: PageEntry) -> str:
-    """A page's summary; empty for a page that only lists others."""
+    """A page's summary, marked where it is not of its own sentences; empty for a page that only lists others."""
     said = page.summary.removeprefix(page.title).lstrip(". ")
-    return "" if not said or said.startswith("Contents: ") else page.summary
+    if not said or said.startswith("Contents: "):
+        return ""
+    return page.summary if page.summary_method == "extractive" else f"{_BY_MODEL}{page.summary}"
 
 
 def with_names(text: str, section: int, names: Mapping[tuple[int, int], str]) -> str:

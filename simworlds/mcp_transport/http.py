@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import hmac
 import math
+import re
 import signal
 import socket
 import sys
@@ -37,6 +38,7 @@ _LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 _ANY = {"0.0.0.0", "::"}  # noqa: S104 - compared with, not bound to
 _HERE = "127.0.0.1"  # by which this machine reaches a server on any address
 _HOSTS = {b"host", b"origin"}
+_HOST = re.compile(r"(?:[\w.-]+|\[[0-9a-fA-F:.]+\])(?::\d{1,5})?")  # as a client sends it
 _BACKLOG = 1024
 _GRACE_SECONDS = 3
 
@@ -129,7 +131,15 @@ class _Server(uvicorn.Server):
 
 
 def check(address: Address) -> None:
-    """Raises CannotServe for an address that other machines can reach, unless there is a token."""
+    """Raises CannotServe for an address that other machines can reach, unless there is a token, and for further names
+    that no client can send.
+    """
+    for name in address.names:
+        if _HOST.fullmatch(name) is None:
+            raise CannotServe(
+                f"--allow-host {name!r} is not a host name. Write it as docs.example.org, without https:// and path; "
+                "an IPv6 address in brackets."
+            )
     if not address.token.strip() and not is_loopback(address.host):
         raise CannotServe(
             f"Other machines can reach the server on {address.host}, so it needs a token. Set SIMWORLDS_TOKEN (or "

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import anyio
 
+from simworlds.terminal.lines import write_line
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -21,6 +23,11 @@ def run_stdio(server: Server[Any], stop: Callable[[], None]) -> None:
 
     ``stop`` is called when a signal ends the process; nothing else is cleaned up then.
     """
+    if os.isatty(0):
+        write_line(
+            sys.stderr,
+            "Waiting for an MCP client on standard input: clients start this command. Ctrl-C ends it.",
+        )
     # Redirected from here to the end, not only while serving: imports and the shutdown may print too, and processes
     # that are started must not read the client's messages.
     source, sink = os.dup(0), os.dup(1)

@@ -13,7 +13,9 @@ import pytest
 from running import COMMAND, REPO, environment, run_here
 
 from kb_build.symbols.records import page_from_json, symbol_from_json
+from kb_serve.in_use import other_in_use
 from kb_serve.knowledge_base import KnowledgeBase
+from simworlds.settings import version_of_base
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,8 +24,8 @@ if TYPE_CHECKING:
 QUALITY = "bpy.types.ClothSettings.quality"
 
 
-def run(home: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    done = run_here(words, environment(home), REPO)
+def run(home: Path, *words: str, given: str = "", folder: Path = REPO) -> subprocess.CompletedProcess[str]:
+    done = run_here(words, environment(home), folder, given.encode())
     return subprocess.CompletedProcess(
         done.args, done.returncode, done.stdout.decode("utf-8"), done.stderr.decode("utf-8")
     )
@@ -80,10 +82,71 @@ def test_the_next_call_can_be_typed_as_it_stands(home: Path, query: str) -> None
     assert following.stdout not in first
 
 
-def test_json_is_exactly_the_answer(home: Path, expected: Callable[..., dict[str, object]]) -> None:
+def test_json_is_the_answer_and_its_version(
+    home: Path, base: Path, expected: Callable[..., dict[str, object]]
+) -> None:
     done = run(home, "docs", "bpy.types.Object", "--json", "--max-tokens", "300", "--part", "2")
     assert (done.returncode, done.stderr) == (0, "")
-    assert json.loads(done.stdout) == expected("bpy.types.Object", max_tokens=300, part=2)
+    with KnowledgeBase(base) as direct:
+        version = direct.meta["blender"]
+    answer = expected("bpy.types.Object", max_tokens=300, part=2)
+    assert json.loads(done.stdout) == {**answer, "blender": version}
+
+
+def test_a_query_is_read_from_standard_input(home: Path, expected: Callable[..., dict[str, object]]) -> None:
+    traceback = (
+        "Traceback (most recent call last):\nAttributeError: 'Action' object has no attribute 'fcurves'\n"
+    )
+    done = run(home, "docs", "-", "--json", given=traceback)
+    answer = json.loads(done.stdout)
+    assert answer.pop("blender")
+    assert answer == expected(traceback)
+    long = run(home, "docs", "-", given="x" * 20_001)
+    assert (long.returncode, long.stdout) == (2, "")
+    assert "more than the limit of 20,000" in long.stderr
+
+
+@pytest.mark.parametrize(
+    "words",
+    [("docs", QUALITY), ("check", "script.py"), ("migrate", "script.py"), ("stubs", "--out", "out")],
+)
+def test_a_base_of_another_blender_than_the_one_in_use_is_told(
+    home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...]
+) -> None:
+    monkeypatch.setattr("kb_serve.in_use.installed_bpy", lambda: "98.1.2")
+    (tmp_path / "script.py").write_text("import bpy\n")
+    done = run(home, *words, folder=tmp_path)
+    assert done.returncode == 0
+    said = done.stdout if words[0] == "docs" else done.stderr
+    assert "knowledge base, but Blender 98.1.2 is in use. Build its base: " in said
+    assert "kb build 98.1" in said
+    assert run(home, "docs", "qqqzzzxxqv").returncode == 1
+
+
+def test_a_version_that_is_named_is_the_one_that_is_wanted(
+    home: Path, base: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("kb_serve.in_use.installed_bpy", lambda: "98.1.2")
+    done = run(home, "docs", QUALITY, "--blender", version_of_base(base))
+    assert "98.1.2" not in done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(
+    ("have", "in_use", "is_told"),
+    [
+        ("4.2.23", "5.1.2", True),
+        ("5.1.2", "4.2.23", True),
+        ("5.1.1", "5.1.2", True),
+        ("5.1.2", "5.1.1", False),
+        ("5.1.2", "5.1.2", False),
+        ("5.1.2", None, False),
+        ("", "5.1.2", False),
+    ],
+)
+def test_another_minor_version_and_a_newer_blender_are_told(
+    have: str, in_use: str | None, is_told: bool
+) -> None:
+    assert bool(other_in_use(have, in_use)) is is_told
 
 
 def test_raw_is_the_whole_record_of_a_symbol(home: Path, base: Path) -> None:
@@ -111,9 +174,10 @@ def test_nothing_found_is_exit_code_1(home: Path, way: tuple[str, ...]) -> None:
     ("words", "hint"),
     [
         (("",), "empty"),
-        ((QUALITY, "--limit", "0"), "limit"),
+        ((QUALITY, "--limit", "0"), "'--limit': 0 is not in the range x>=1"),
+        ((QUALITY, "--part", "0"), "'--part': 0 is not in the range x>=1"),
         ((QUALITY, "--part", "99"), "part"),
-        ((QUALITY, "--max-tokens", "1"), "max_tokens"),
+        ((QUALITY, "--max-tokens", "1"), "1 is not in the range x>=150"),
         ((QUALITY, "--max-tokens", "many"), "--max-tokens"),
         ((QUALITY, "--blender", "9.9"), "simworlds kb build 9.9"),
         ((QUALITY, "--blender", "../../etc"), "not a Blender version"),
@@ -185,7 +249,41 @@ def test_on_a_terminal_the_markdown_is_rendered(home: Path) -> None:
     assert b"\x1b[" in shown
 
 
-def test_options_for_http_alone_are_refused_on_stdio(home: Path) -> None:
-    done = run(home, "serve", "--port", "1234")
-    assert done.returncode == 2
-    assert "--http" in done.stderr
+@pytest.mark.parametrize(
+    ("options", "why"),
+    [
+        (("--port", "1234"), "go with --http"),
+        (("--token", "secret"), "go with --http"),
+        (("--blender", "five"), "'five' is not a Blender version"),
+        (("--blender-exe", "/nowhere"), "no Blender executable at /nowhere"),
+        (("--http", "--blender-exe", "/bin/true"), "/bin/true is not Blender"),
+        (("--http", "--port", "0", "--allow-host", "https://docs.example.org/x"), "is not a host name"),
+        (("--http", "--port", "0", "--allow-host", ""), "--allow-host '' is not a host name"),
+    ],
+)
+def test_a_server_that_cannot_work_as_it_is_told_does_not_start(
+    home: Path, options: tuple[str, ...], why: str
+) -> None:
+    done = run(home, "serve", *options)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert why in done.stderr
+
+
+@pytest.mark.skipif(os.name == "nt", reason="pseudo-terminals are POSIX's")
+def test_a_server_on_a_terminal_says_what_it_waits_for(home: Path) -> None:
+    import pty
+
+    ours, theirs = pty.openpty()
+    with subprocess.Popen(
+        [*COMMAND, "serve"],
+        env=environment(home),
+        stdin=theirs,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        os.close(theirs)
+        assert process.stderr is not None
+        assert "Waiting for an MCP client on standard input" in process.stderr.readline()
+        os.close(ours)
+        process.terminate()

@@ -10,9 +10,10 @@ import pytest
 from asking import SEED, classes, of_data, paths
 
 from kb_serve.answer.budget import tokens
-from kb_serve.answer.composer import LEAST_TOKENS, LIMIT, MAX_LIMIT, MAX_TOKENS, AnswerComposer
+from kb_serve.answer.composer import AnswerComposer
 from kb_serve.answer.next_call import next_call
 from kb_serve.errors import BadQuery
+from kb_serve.query_limits import LEAST_TOKENS, LIMIT, MAX_LIMIT, MAX_TOKENS
 
 if TYPE_CHECKING:
     from kb_serve.answer.docs_answer import DocsAnswer

@@ -101,6 +101,15 @@ def test_a_page_that_only_lists_others_says_which(kb: KnowledgeBase, reader: Bas
     assert said_of(page._replace(summary="Of cloth."), reader) == "Of cloth."
 
 
+def test_a_summary_that_a_language_model_wrote_is_marked(reader: BaseReader) -> None:
+    page = reader.page_entry("physics/cloth/introduction")
+    assert page is not None
+    assert "AI summary" not in said_of(page._replace(summary_method="extractive"), reader)
+    for method in ("claude", "shipped"):
+        written = page._replace(summary="Of cloth.", summary_method=method)
+        assert said_of(written, reader) == "AI summary: Of cloth."
+
+
 @pytest.mark.parametrize(
     ("line", "expected"),
     [

@@ -165,6 +165,13 @@ def test_with_a_token_any_address_will_do() -> None:
             check(Address("0.0.0.0", token=token))
 
 
+@pytest.mark.parametrize(
+    "name", ["docs.example.org", "docs.example.org:8443", "10.0.0.7", "[fe80::1]", "MY_PC"]
+)
+def test_names_that_clients_may_send_are_let_in(name: str) -> None:
+    check(Address(names=(name,)))
+
+
 def test_loopback_is_decided_by_address_not_by_name() -> None:
     assert [host for host in ("127.0.0.1", "127.8.9.1", "::1", "localhost") if not is_loopback(host)] == []
     assert [

@@ -131,12 +131,16 @@ def test_a_single_file_is_taken_for_the_version_that_it_is_of(
 
 
 @pytest.mark.usefixtures("without_blender")
-def test_it_builds_when_the_client_takes_up_its_offer(serve_from: ServeFrom, tmp_path: Path) -> None:
+def test_it_builds_when_the_client_takes_up_its_offer(
+    serve_from: ServeFrom, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, value in (("UV_OFFLINE", "1"), ("UV_CACHE_DIR", str(tmp_path / "cache"))):
+        monkeypatch.setenv(name, value)  # so that it fails at once
     service = serve_from(tmp_path, rebuild=True)
     service.warm()
     assert "ask blender_docs 'kb build 5.1'" in missing(service)
     with pytest.raises(BaseMissing, match="being built in the background"):
-        service.ask("kb build 2.79", blender=None, limit=1, max_tokens=500, part=1)
+        service.ask("kb build 4.3", blender=None, limit=1, max_tokens=500, part=1)
     service.upkeep.run()  # what the server runs beside: it starts no second build
     for thread in threading.enumerate():
         if thread.name == "build":
@@ -167,7 +171,7 @@ def test_what_is_no_version_is_told_while_a_base_is_being_fetched(
 
 
 @pytest.mark.skipif(os.name == "nt", reason="executables are shell scripts here")
-@pytest.mark.parametrize(("version", "is_passed"), [("98.1", True), ("2.79", False)])
+@pytest.mark.parametrize(("version", "is_passed"), [("98.1", True), ("4.3", False)])
 def test_an_executable_builds_the_base_of_its_own_version_alone(
     serve_from: ServeFrom, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, version: str, is_passed: bool
 ) -> None:
@@ -177,7 +181,7 @@ def test_an_executable_builds_the_base_of_its_own_version_alone(
     service = serve_from(tmp_path, blender_exe=blender, rebuild=True)
     jobs: list[list[str]] = []
     monkeypatch.setattr(type(service.upkeep), "_perform", lambda _, job: jobs.append(job.command))
-    assert service.upkeep.accept(f"kb build {version}") == version
+    assert "being built" in service.upkeep.accept(f"kb build {version}")
     for thread in threading.enumerate():
         if thread.name == "build":
             thread.join(SECONDS)
@@ -189,9 +193,38 @@ def test_it_offers_nothing_that_it_may_not_do(serve_from: ServeFrom, tmp_path: P
     service = serve_from(tmp_path)
     service.warm()
     assert "ask blender_docs" not in missing(service)
-    with pytest.raises(BaseMissing):
-        service.ask("kb build 2.79", blender=None, limit=1, max_tokens=500, part=1)
+    with pytest.raises(BaseMissing, match=r"Build it: .*kb build 4\.3"):
+        service.ask("kb build 4.3", blender=None, limit=1, max_tokens=500, part=1)
     assert service.upkeep.state == "idle"
+
+
+@pytest.mark.parametrize(
+    ("query", "said"),
+    [
+        ("kb build 2.79", "No base can be built of Blender 2.79"),
+        ("kb build 9.9", "Blender 9.9 has no bpy package"),
+        ("simworlds kb fetch 5.1", r"kb fetch 5\.1 --from"),
+    ],
+)
+@pytest.mark.usefixtures("without_blender")
+def test_a_query_for_a_base_that_cannot_be_built_here_is_told_so(
+    serve_from: ServeFrom, tmp_path: Path, query: str, said: str
+) -> None:
+    service = serve_from(tmp_path, rebuild=True)
+    service.warm()
+    with pytest.raises(BaseMissing, match=said):
+        service.ask(query, blender=None, limit=1, max_tokens=500, part=1)
+    assert service.upkeep.state == "idle"
+
+
+@pytest.mark.parametrize("doing", ["build", "fetch"])
+def test_a_query_for_a_base_that_is_there_is_told_how_to_ask_it(
+    serve_from: ServeFrom, base: Path, doing: str
+) -> None:
+    service = serve_from(base.parent.parent, rebuild=True)
+    (version, *_) = service.bases.built()
+    with pytest.raises(BaseMissing, match=f'has its knowledge base already.*blender="{version}"'):
+        service.ask(f"kb {doing} {version}", blender=None, limit=1, max_tokens=500, part=1)
 
 
 @pytest.mark.skipif(os.name == "nt", reason="executables are shell scripts here")

@@ -415,6 +415,8 @@ def test_a_signal_leaves_no_process_behind_though_blender_is_busy(home: Path, nu
     [
         (["--blender-exe", "/nowhere/blender"], "/nowhere/blender"),
         (["--sessions", "3"], "--sessions needs --http"),
+        (["--token", "secret"], "--token needs --http"),
+        (["--tools", "docs", "--blender", "five"], "'five' is not a Blender version"),
         (["--read", "/nowhere"], "/nowhere"),
         (["--http", "--host", "0.0.0.0"], "SIMWORLDS_TOKEN"),
     ],
