@@ -21,8 +21,10 @@ from agents.blender.fluid_support import check_fluids
 from agents.blender.launch import launch_in, runs_folder
 from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
+from simworlds.how_to_get_bases import how_to_get
+from simworlds.operating_system import SYSTEM
 from simworlds.own_command import own_command
-from simworlds.releases import USUAL, version_key
+from simworlds.releases import USUAL, release, version_key
 from simworlds.sandbox.confined_command import best_sandbox, bubblewrap_fault
 from simworlds.sandbox.errors import BlenderError, CannotStart, NotInstalled
 from simworlds.sandbox.launch import find_blender
@@ -126,7 +128,7 @@ def checks(choice: BlenderChoice) -> Generator[Check]:
             yield "baking a drop of liquid", lambda: _fluids(alone)
         yield (
             "looking for the knowledge base",
-            lambda: _knowledge(runtimes[0].version if runtimes else choice.version),
+            lambda: _knowledge(choice.version, runtimes[0] if runtimes else None),
         )
         yield "looking for an open Blender", _open_blender
         yield "measuring free space", lambda: _room(sandbox)
@@ -139,7 +141,9 @@ def _find(choice: BlenderChoice, runtimes: list[Runtime]) -> DoctorResult:
     try:
         runtime = find_blender(choice.version, choice.blender_exe, install=choice.install)
     except NotInstalled as error:
-        advice = f"{own_command()} doctor --install gets it (about 350 MB), as does the first command that needs it"
+        wanted = f" --blender {choice.version}" if choice.version else ""
+        command = f"{own_command()} doctor{wanted} --install"
+        advice = f"{command} gets it (about 350 MB), as does the first command that needs it"
         return DoctorResult("Blender", "bad", str(error), advice=advice)
     except CannotStart as error:
         return DoctorResult("Blender", "bad", str(error))
@@ -338,7 +342,7 @@ def _time(seconds: float) -> str:
 # Around Blender
 
 
-def _knowledge(version: str | None) -> DoctorResult:
+def _knowledge(asked: str | None, runtime: Runtime | None) -> DoctorResult:
     path = os.pathsep.join(filter(None, [str(_SOURCE), os.environ.get("PYTHONPATH")]))
     try:
         done = subprocess.run(
@@ -355,20 +359,22 @@ def _knowledge(version: str | None) -> DoctorResult:
         return DoctorResult("Knowledge", "poor", f"the list of bases cannot be read: {error}")
     minors = {".".join(str(base.get("blender", "")).split(".")[:2]): base for base in bases}
     # Where no Blender was found and none is asked for, answers come from the newest base.
-    minor = ".".join((version or "").split(".")[:2]) or max(minors, key=version_key, default="")
+    version = runtime.version if runtime else asked or ""
+    minor = ".".join(version.split(".")[:2]) or max(minors, key=version_key, default="")
     data = {"built": sorted(minors), "wanted": minor}
     if (base := minors.get(minor)) is not None:
         text = f"for Blender {base['blender']}, {base.get('bytes', 0) / 1e6:,.0f} MB"
         return DoctorResult("Knowledge", "good", text, place=str(base.get("path", "")), data=data)
     have = f", only for {', '.join(sorted(minors, key=version_key))}" if minors else ""
-    advice = f"{own_command()} kb build {minor or USUAL}"
-    return DoctorResult(
-        "Knowledge",
-        "poor",
-        f"no base{f' for Blender {minor}' if minor else ''}{have}",
-        advice=advice,
-        data=data,
-    )
+    text = f"no base{f' for Blender {minor}' if minor else ''}{have}"
+    return DoctorResult("Knowledge", "poor", text, advice=_how_to_build(minor or USUAL, runtime), data=data)
+
+
+def _how_to_build(minor: str, runtime: Runtime | None) -> str:
+    """The command that builds a base; where none can, why."""
+    if runtime is not None and runtime.kind == "executable":
+        return f"{own_command()} kb build {minor} --blender-exe {SYSTEM.quoted(str(runtime.executable))}"
+    return f"{own_command()} kb build {minor}" if release(minor) is not None else how_to_get(minor)
 
 
 def _open_blender() -> DoctorResult:

@@ -112,7 +112,7 @@ def run(**given: Any) -> None:
 @click.argument("results", type=_PATH)
 @_scoring
 def rescore(results: Path, **given: Any) -> None:
-    """Score all that is in a folder of results anew, as far as specs, code, Blender or judge are others by now.
+    """Score all that is in a folder of results anew, as far as specs, code, Blender or judge have changed since.
 
     No system is run again. What was scored stays where its file is gone. Exit codes as of 'run'.
     """

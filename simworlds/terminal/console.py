@@ -22,6 +22,15 @@ class Console(RichConsole):
     def __init__(self, stream: TextIO, **options: Any) -> None:
         super().__init__(file=unguarded(stream), markup=False, emoji=False, highlight=False, **options)
 
+    def print(self, *objects: Any, **options: Any) -> None:
+        """See rich. What does not go to a terminal has no blanks at the ends of its lines."""
+        if self.is_terminal:
+            super().print(*objects, **options)
+            return
+        with self.capture() as captured:
+            super().print(*objects, **options)
+        self.file.write("".join(f"{line.rstrip()}\n" for line in captured.get().splitlines()))
+
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterable[Segment]:
         """See rich. Every text that is printed comes through here."""
         for segment in super().render(renderable, options):

@@ -35,7 +35,7 @@ def as_table(report: Report, scope: VerificationScope, width: int) -> Group:
         parts.append(_table(groups, scope, is_narrow=width < _NARROW))
     parts.append(Text(verdict(report), "bold red" if exit_code(report) else "bold green"))
     parts += [Text(line, "dim") for line in coverage(report, scope)]
-    parts.append(Text(f"measured in {report.seconds:.1f} s, without opening the file", "dim"))
+    parts.append(Text(f"measured in {report.seconds:.1f} s, not counting the opening of the file", "dim"))
     return Group(*parts)
 
 

@@ -117,6 +117,7 @@ def test_a_page_for_people_fits_a_terminal_and_ends_with_a_verdict(tmp_path: Pat
     assert done.returncode == 0
     lines = done.stdout.splitlines()
     assert max(map(len, lines)) <= 80
+    assert all(line == line.rstrip() for line in lines)
     assert lines[0].startswith("✓  Blender    ")
     assert "!  Sandbox    none: code in Blender can read and write your files" in done.stdout
     assert "- does not prevent: reading and writing any file that you can" in done.stdout
@@ -137,6 +138,10 @@ def test_wrong_executable_exits_with_1(tmp_path: Path) -> None:
     unknown = run("--json", "--blender", "4.9", home=tmp_path)
     assert unknown.returncode == 1
     assert "there is no bpy package for Blender 4.9" in findings(unknown)["Blender"]["text"]
+    assert "kb build 4.9 --blender-exe /path/to/blender" in findings(unknown)["Knowledge"]["advice"]
+    nonsense = run("--blender", "five", home=tmp_path)
+    assert (nonsense.returncode, nonsense.stdout) == (2, "")
+    assert "'five' is not a Blender version" in nonsense.stderr
 
 
 def test_missing_libraries_are_named_with_their_packages(tmp_path: Path) -> None:
@@ -279,5 +284,5 @@ def test_nothing_is_installed_unasked(tmp_path: Path) -> None:
     assert done.returncode == 1
     found = findings(done)["Blender"]
     assert found["text"] == "Blender 4.2.0 is not installed."
-    assert "doctor --install gets it (about 350 MB)" in found["advice"]
+    assert "doctor --blender 4.2.0 --install gets it (about 350 MB)" in found["advice"]
     assert not (tmp_path / "home" / "runtimes").exists()
