@@ -244,14 +244,17 @@ def test_tries_every_wall_but_those_that_only_show_from_outside(
 
 def test_a_knowledge_base_that_is_there_is_found(base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SIMWORLDS_HOME", str(base.parent.parent))
-    found = doctor_checks._knowledge(installed_bpy())
+    found = doctor_checks._knowledge(installed_bpy(), None)
     assert found.state == "good"
     assert found.place == str(base)
-    assert doctor_checks._knowledge(None) == found  # no Blender was found, none was asked for
-    other = doctor_checks._knowledge("3.4.1")
+    assert doctor_checks._knowledge(None, None) == found  # no Blender was found, none was asked for
+    own = Runtime(Path("/opt/my blender/blender"), "executable", "3.4.1")
+    other = doctor_checks._knowledge(None, own)
     assert other.state == "poor"
-    assert other.advice == f"{own_command()} kb build 3.4"
+    assert other.advice == f"{own_command()} kb build 3.4 --blender-exe '/opt/my blender/blender'"
     assert other.text == f"no base for Blender 3.4, only for {found.data['wanted']}"
+    assert doctor_checks._knowledge("4.3", None).advice == f"{own_command()} kb build 4.3"
+    assert "No base can be built of Blender 2.79" in doctor_checks._knowledge("2.79", None).advice
 
 
 def test_checks_an_installed_blender(tmp_path: Path) -> None:
