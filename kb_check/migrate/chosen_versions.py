@@ -80,4 +80,6 @@ def read_versions(target: str | None, source: str | None, keep: str, home: Path)
             f"--keep {','.join(newer)} is newer than {to}, the Blender to migrate to. Give a newer --to, or "
             "leave it out."
         )
-    return Versions(base, blender, to, source, tuple(version for version in kept if version != to), built_bases(home))
+    return Versions(
+        base, blender, to, source, tuple(version for version in kept if version != to), built_bases(home)
+    )
