@@ -37,16 +37,18 @@ _INSTANCES = frozenset({"self", "cls"})  # of the script's own classes
 _RULES = (
     "callback-signature", "crash", "given-callback", "list-attribute", "missing-argument", "no-custom-properties",
     "not-subscriptable", "operator-idname", "positional-argument", "read-only", "refused-call", "refused-path",
-    "refused-property", "refused-value", "unknown-node", "unknown-value", "wrong-count", "wrong-type",
+    "refused-property", "refused-value", "unknown-node", "unknown-value", "wrong-count", "wrong-mode", "wrong-size",
+    "wrong-type",
 )  # fmt: skip
+_NEVER_TRUE = "never-true"  # a warning, as Blender refuses nothing
 _NO_VALUE = "unknown-value"
 _IS_NONE = re.compile(NO_VALUE)  # what is said of a value that no Blender has
-_ARGUMENT = "("  # in the path of an argument: of the values of properties an answer tells by itself
 _GONE = "unknown-attribute"  # what is wrong behind a name that is gone, its successor may take otherwise
 _SIGNS = "=([*"  # one of which such code has
 # What code does that is more than a name.
 _DOES = (
-    ast.Assign, ast.AugAssign, ast.AnnAssign, ast.Call, ast.BinOp, ast.Subscript, ast.FunctionDef, ast.ClassDef,
+    ast.Assign, ast.AugAssign, ast.AnnAssign, ast.Call, ast.BinOp, ast.Compare, ast.Subscript, ast.FunctionDef,
+    ast.ClassDef,
 )  # fmt: skip
 
 
@@ -64,7 +66,7 @@ def notes_on_code(reader: BaseReader, query: str) -> tuple[str, ...]:
     code = f"{_bindings(tree, checker)}\n{code}"
     lines = split_lines(code)
     try:
-        findings = [*_news(checker.check(code, rules=(*_RULES, _GONE)))]
+        findings = [*_news(checker.check(code, rules=(*_RULES, _NEVER_TRUE, _GONE)))]
     except sqlite3.DatabaseError as error:
         raise checker.names.reader.damaged(error) from error
     notes = list(dict.fromkeys(_note(finding, lines) for finding in findings))
@@ -82,11 +84,16 @@ def _code_in(query: str) -> tuple[str, ast.Module] | None:
     else:
         texts = [query, query.partition("\n")[2], query.rpartition("\n")[0]]
     for text in texts:
-        code = textwrap.dedent(text).strip()
+        code = _with_body(textwrap.dedent(text).strip())
         tree = parsed(code) if any(sign in code for sign in _SIGNS) else None
         if isinstance(tree, ast.Module) and any(isinstance(node, _DOES) for node in ast.walk(tree)):
             return code, tree
     return None
+
+
+def _with_body(code: str) -> str:
+    """Code that ends with the head of a block, as ``if obj.type == "LAMP":``, with a block."""
+    return f"{code} ..." if code.endswith(":") else code
 
 
 def _bindings(tree: ast.Module, checker: Checker) -> str:
@@ -151,10 +158,10 @@ def _news(findings: Sequence[Finding]) -> Iterator[Finding]:
     for finding in findings:
         span = finding.span
         is_behind = span.line in gone and gone[span.line] < span.column
-        is_value = finding.rule == _NO_VALUE and _ARGUMENT in finding.symbol
-        is_value = is_value and _IS_NONE.search(finding.message) is not None
+        is_value = finding.rule == _NO_VALUE and _IS_NONE.search(finding.message) is not None
         is_told = finding.rule == _GONE or (bool(finding.absent) and not is_value) or is_behind
-        if (finding.severity == "error" or is_value) and span.line > 1 and not is_told:
+        is_wrong = finding.severity == "error" or is_value or finding.rule == _NEVER_TRUE
+        if is_wrong and span.line > 1 and not is_told:
             yield finding
 
 

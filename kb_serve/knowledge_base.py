@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 _MOST_WORK = 150_000
 # What code has that words have not.
 _CODE = re.compile(
-    r"[\w\])] *(?:[-+*/%@|&^]|//|\*\*)?=[^=]|\w\([^)]|^[ \t]*(?:for|class|def|with|if) .*:", re.MULTILINE
+    r"[\w\])] *(?:[-+*/%@|&^]|//|\*\*)?=[^=]|[!=]= ?[\"']|\w\([^)]|^[ \t]*(?:for|class|def|with|if) .*:",
+    re.MULTILINE,
 )
 
 

@@ -29,6 +29,11 @@ if TYPE_CHECKING:
         ("blf.size(0, 20, 72)", "takes 2 arguments by place"),
         ("pb.rotation_euler = (0, 0)", "`bpy.types.PoseBone.rotation_euler` takes 3 floats"),
         ("nodes.new('ShaderNodeGlass')", "Closest: `ShaderNodeBsdfGlass`."),
+        ("scene.render.engine = 'BLENDER_GAME'", "It takes `BLENDER_EEVEE`"),
+        ("bpy.ops.object.mode_set(mode='EDIT_GPENCIL')", "write 'EDIT'."),
+        ("bpy.context.mode == 'EDIT_GPENCIL'", "'EDIT_GREASE_PENCIL' has its label."),
+        ("if obj.mode == 'EDIT_GPENCIL':", "the comparison never matches it."),
+        ("Euler((1, 2, 3)).to_matrix() @ obj.matrix_world", "3 × 3 does not fit a matrix of 4 × 4."),
         # One class alone has such items, whatever the variable is called.
         ("sim_out.state_items.new('COLOR', 'x')", "'COLOR' is not a value of"),
         ("output.repeat_items.new('GEOMETRYS', 'x')", "Closest: `GEOMETRY`."),
@@ -73,6 +78,8 @@ def test_what_is_gone_comes_before_what_is_wrong_behind_it(kb: KnowledgeBase) ->
         "light.color = (1, 1, 1, 1)",  # an object has four, a light three
         "cam.lens = 'wide'",  # of the name, answers tell
         "obj.keyframe_insert('rotation')",
+        "bpy.ops.mesh.subdivide()",
+        "obj.type == 'MESH'",
         "data = np.empty(3)",  # a word that only one class has tells none
         "Menu.draw_preset(self, context)",  # a class's own name is no instance of it
         "nodes.new('MyAddonNode')",
@@ -95,7 +102,11 @@ def test_what_answers_say_anyway_is_not_said_twice(kb: KnowledgeBase) -> None:
 
 @pytest.mark.parametrize(
     "query",
-    ["obj.display_type = 'WIREFRAME'", "obj.modifiers.new('c', 'CLOTHS')"],
+    [
+        "obj.display_type = 'WIREFRAME'",
+        "obj.modifiers.new('c', 'CLOTHS')",
+        "scene.render.engine = 'BLENDER_RENDER'",
+    ],
 )
 def test_a_value_that_is_none_is_told_once(query: str, kb: KnowledgeBase) -> None:
     assert len(kb.query(query).notes) == 1

@@ -137,9 +137,15 @@ class LostNames:
         return LostName(removed, 1) if is_far_likelier or not today else None
 
     def alike(self, chain: Chain, readings: Sequence[ResolvedChain]) -> RemovedSymbol | None:
-        """What may be meant as well as what has the name today: of a class that counts more."""
+        """What may be meant as well as what has the name today: of a class that counts more, or of another one that the
+        variable is usually of.
+        """
+        if len(chain.steps) != 1:
+            return None
+        if removed := self._of_usual_class(chain):
+            return removed
         found = self._against_today(chain, readings)
-        if found is None or len(chain.steps) > 1:
+        if found is None:
             return None
         removed, lost, today = found
         if max(today, default=0.0) and any(self._lists(one, chain) for one in readings if one.complete):
@@ -147,6 +153,16 @@ class LostNames:
         owners = self._reader.weights([reading.symbols[0] for reading in readings if reading.complete])
         most = max(owners.values(), default=0.0)
         return removed if removed.successors and lost and lost >= most else None
+
+    def _of_usual_class(self, chain: Chain) -> RemovedSymbol | None:
+        """What one of the classes lost that a variable is usually of, where another has it: ``bone.select``."""
+        name, classes = chain.steps[0].text, usual_classes(chain.root)
+        if len(classes) == 1 or chain.steps[0].kind != "attr":
+            return None
+        lost = (
+            self._removed.of_member(cls, name) for cls in classes if not self._reader.member_of(cls, name)
+        )
+        return next(filter(None, lost), None)
 
     def _against_today(
         self, chain: Chain, readings: Sequence[ResolvedChain]

@@ -83,6 +83,7 @@ def test_the_scripts_own_is_left_alone(kb: KnowledgeBase, written: str) -> None:
     [
         ("terrain.select = True", "Object.select", "2.80"),
         ("q.hide = True", "Object.hide", "2.80"),
+        ("bone.select = True", "Bone.select", "5.0"),
         ("cb.lift = (0.95, 0.98, 1.05)", "CompositorNodeColorBalance.lift", "5.0"),
     ],
 )
@@ -93,7 +94,7 @@ def test_what_a_likelier_thing_had_is_named(kb: KnowledgeBase, written: str, los
     assert answer.hits[0].id.endswith(lost.partition(".")[2])
 
 
-@pytest.mark.parametrize("written", ["bone.select = True", "x.location = (1, 2, 3)", "x.type = 'MESH'"])
+@pytest.mark.parametrize("written", ["bone.use_deform = True", "x.location = (1, 2, 3)", "x.type = 'MESH'"])
 def test_nothing_lost_is_named_where_the_variable_or_the_name_tells(kb: KnowledgeBase, written: str) -> None:
     assert "is what had" not in kb.query(written).text
 
