@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import csv
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -157,8 +157,8 @@ class Successors:
         """What takes the place of a missing path, best first, each row with one target or none.
 
         A name of later versions has the one that it was given in place of. Without a row of its own, a name has the
-        same name in what took its owner's place, if that has it; and where nothing took its owner's place, nothing took
-        its own.
+        same name in what took its owner's place, if that has it; or what took its place there, if that has lost it.
+        Where nothing took its owner's place, nothing took its own.
         """
         if path not in self._found:
             self._found[path] = []  # against circles
@@ -168,7 +168,7 @@ class Successors:
     def _of(self, path: str, step: int) -> Iterator[Succession]:
         row = self._row(path)
         if row is None:
-            yield from self._earlier(path) or self._with_owner(path)
+            yield from self._earlier(path) or self._with_owner(path, step)
             return
         if not row.new:
             yield row
@@ -225,7 +225,7 @@ class Successors:
         elsewhere = owner not in _TOP and owner != split_path(row.old)[0] and self._exists(owner)
         return not _HELD_BY_NAME.search(row.how) and not (both and elsewhere)
 
-    def _with_owner(self, path: str) -> Iterator[Succession]:
+    def _with_owner(self, path: str, step: int) -> Iterator[Succession]:
         above, mark, name = split_path(path)
         if above in {"", "bpy.types", "bpy.ops"} or self._exists(above):
             return
@@ -237,6 +237,10 @@ class Successors:
                 target = joined_path(owner, mark, name)
                 if self._exists(target):
                     yield Succession(path, (target,), "", row.version, row.source)
+                    return
+                if step < _STEPS and _only_renames(row) and self._history.exists(target, row.version):
+                    # The new owner had it under the same name, and has lost it since.
+                    yield from (replace(later, old=path) for later in self._of(target, step + 1))
                     return
 
     def _row(self, path: str) -> Succession | None:

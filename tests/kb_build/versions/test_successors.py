@@ -246,6 +246,34 @@ def test_successors_exist_in_every_version_that_can_be_built(
             ["bpy.ops.wm.alembic_export(visible_objects_only)"],
         ),
         ("bpy.ops.wm.alembic_export(visible_layers_only)", "5.1", [""]),
+        # What is like it, and not what is called nearly so.
+        (
+            "bpy.types.SmokeDomainSettings.collision_group",
+            "5.1",
+            ["bpy.types.FluidDomainSettings.effector_group"],
+        ),
+        ("bpy.types.Bone.bbone_curveiny", "5.1", ["bpy.types.Bone.bbone_curveinz"]),
+        ("bpy.types.EditBone.bbone_curveouty", "5.1", ["bpy.types.EditBone.bbone_curveoutz"]),
+        ("bpy.ops.pose.push_rest", "5.1", ["bpy.ops.pose.blend_with_rest"]),
+        ("bpy.ops.object.face_map_remove", "5.1", ["bpy.ops.geometry.attribute_remove"]),
+        ("bpy.ops.object.face_map_select", "5.1", [""]),
+        ("bpy.types.SpaceLogicEditor", "5.1", [""]),
+        ("bpy.types.PythonController", "5.1", [""]),
+        ("bpy.types.PythonController.module", "5.1", [""]),
+        ("bpy.types.GameFloatProperty.value", "5.1", [""]),
+        # Of what was renamed, and later lost it.
+        ("bpy.types.PointLamp.falloff_type", "5.1", ["bpy.types.ShaderNodeLightFalloff"]),
+        ("bpy.types.UserPreferencesSystem.multi_sample", "5.1", ["bpy.types.PreferencesSystem.viewport_aa"]),
+        ("bpy.types.EnvironmentMap.resolution", "5.1", []),
+        # Of one group of settings that went to another.
+        (
+            "bpy.types.UserPreferencesView.use_mouse_depth_navigate",
+            "5.1",
+            ["bpy.types.PreferencesInput.use_mouse_depth_navigate"],
+        ),
+        ("bpy.ops.view3d.select_border", "5.1", ["bpy.ops.view3d.select_box"]),
+        ("bpy.ops.mesh.select_similar(type):SEAM", "5.1", ["bpy.ops.mesh.select_similar(type):EDGE_SEAM"]),
+        ("bpy.ops.wm.usd_import(filter_collada)", "5.1", [""]),
         # Not yet removed, or not yet there.
         ("bpy.types.Action.fcurves", "4.5", []),
         (
@@ -277,6 +305,7 @@ def test_a_name_leads_to_what_takes_its_place_in_that_version(
         "bpy.ops.wm.usd_export(export_textures)",
         "bpy.types.AssetHandle.get_full_library_path",
         "bpy.types.CompositorNodeAlphaOver.premul",
+        "bpy.types.CompositorNodeBlur.use_bokeh",
         "bpy.types.CompositorNodeMixRGB",
         "bpy.types.SpeedControlSequence.multiply_speed",
     ],
