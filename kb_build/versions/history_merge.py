@@ -74,7 +74,7 @@ def _unknown(masks: Masks, stubs: int) -> Masks:
     for path in sorted(masks, key=len):  # owners before their members
         mask = masks[path]
         above, mark, _ = split_path(path)
-        hidden = unknown.get(above, 0) | _between(mask)
+        hidden = unknown.get(above, 0) | _between(mask) | _behind(mask, stubs)
         if not mask & stubs:  # stubs may not tell of such names at all
             hidden = stubs
         elif mark == ":":
@@ -86,6 +86,14 @@ def _unknown(masks: Masks, stubs: int) -> Masks:
 def _between(mask: int) -> int:
     """The versions after the first and before the last that have a symbol: stubs that lack it there left it out."""
     return (1 << mask.bit_length()) - (mask & -mask)
+
+
+def _behind(mask: int, stubs: int) -> int:
+    """The versions after the last that has a symbol, where the stubs before that one left it out already."""
+    below = (1 << mask.bit_length() - 1) - 1
+    nearest = 1 << (stubs & below).bit_length() >> 1
+    left_out = nearest and not mask & nearest and mask & nearest - 1
+    return ~(below << 1 | 1) if left_out else 0
 
 
 def _share(masks: Masks, unknown: Masks, stubs: int) -> dict[str, str]:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, Successor
 
 _INSTANCES = {f"{TYPES}Context": "bpy.context"}
+_LISTING = "listing of"  # how the sources begin that are no word on a change
 _MOST_OWNERS = 40  # a name that more removed symbols have says nothing about its class
 
 
@@ -38,8 +39,12 @@ class RemovedSymbol:
     similar: tuple[tuple[str, float], ...] = ()
 
     def is_dated(self, versions: Sequence[str]) -> bool:
-        """Whether ``gone`` is the very version that lost it: next after ``last`` in ``versions``, or by a source."""
-        return any(successor.version == self.gone for successor in self.successors) or self.was_last(versions)
+        """Whether ``gone`` is the very version that lost it: next after ``last`` in ``versions``, or by a source.
+
+        A listing of what a version has does not say since when it lacks the rest.
+        """
+        told = (one for one in self.successors if not one.source.startswith(_LISTING))
+        return any(successor.version == self.gone for successor in told) or self.was_last(versions)
 
     def was_last(self, versions: Sequence[str]) -> bool:
         """Whether ``last`` is the version right before ``gone`` in ``versions``: none between them may have it."""
@@ -106,8 +111,8 @@ class RemovedSymbolLookup:
         return tuple((f"{whole}({name})", 1.0) for name in alike)
 
     def _of_same_items(self, path: str) -> Iterator[Successor]:
-        """What took the place of an item of an argument, where that is known of a property with the same items, which
-        may have kept it longer.
+        """What took the place of an item of an argument, or why nothing did, where that is known of a property with the
+        same items, which may have kept it longer.
         """
         argument, item = argument_of(path), item_of(path)
         symbol = self._reader.symbol(plain_path(path)) if argument and item else None
@@ -118,12 +123,14 @@ class RemovedSymbolLookup:
         for other in self._reader.removed_named(item):
             holder = other.removesuffix(f":{item}")
             same = self._reader.symbol(holder) if other != path and "(" not in holder else None
-            if same is None:
+            if same is None or not items <= {i.identifier for i in same.enum_items}:
                 continue
             for successor in self._reader.successors(other):
                 new = successor.target.removeprefix(f"{holder}:")
-                if new in items and items <= {i.identifier for i in same.enum_items}:
+                if new in items:
                     yield replace(successor, target=f"{path.removesuffix(item)}{new}")
+                elif not new:
+                    yield successor
 
     def of_member(self, owner: str, name: str) -> RemovedSymbol | None:
         """A removed member of a class, of its bases, of what they were called before, or of a module.

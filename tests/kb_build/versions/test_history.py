@@ -198,3 +198,21 @@ def test_a_module_that_a_build_lacks_as_a_whole_is_not_new_in_the_next(committed
 def test_a_module_that_stubs_tell_of_is_new_where_they_lack_it() -> None:
     history = merge_versions({"2.83": {"bpy"}, "2.90": {"bpy", "bl_math"}, "4.2.0": {"bpy", "bl_math"}})
     assert history.exists("bl_math", "2.83") is False
+
+
+def test_what_stubs_left_out_while_blenders_had_it_they_do_not_call_gone() -> None:
+    """Stubs of old versions list the settings of Cycles, and later ones none."""
+    rows = {
+        "2.80": {"bpy", "bpy.types.Cycles", "bpy.types.Old"},
+        "2.90": {"bpy"},
+        "3.4.1": {"bpy", "bpy.types.Cycles"},
+        "3.5": {"bpy"},
+        "4.2.0": {"bpy"},
+    }
+    history = merge_versions(rows)
+    assert [history.exists("bpy.types.Cycles", version) for version in ("3.4", "3.5", "4.2")] == [
+        True,
+        None,
+        False,
+    ]
+    assert history.exists("bpy.types.Old", "2.90") is False

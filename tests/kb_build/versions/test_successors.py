@@ -7,10 +7,11 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import pytest
+from statements_in_blender import run_statements
 
 from kb_build.errors import StoreError
 from kb_build.symbols.paths import joined_path, split_path
-from kb_build.versions.history import ApiHistory
+from kb_build.versions.history import ApiHistory, is_module
 from kb_build.versions.successors import Succession, Successors, load_successors
 from simworlds.releases import version_key
 
@@ -23,10 +24,12 @@ if TYPE_CHECKING:
 UNLISTED = (
     "bgl.gl",
     "bpy_extras.",
+    "rna_prop_ui.",
     "gpu.shader.from_builtin(",
     'bpy.types.CompositorNodeRLayers.outputs["Volume',
 )
 OF_ADD_ONS = "Add-ons"  # the part of the release notes that a row is from
+OF_MODULES = "modules that Blender 5.0 brings"  # the source of what its internal modules were called
 
 
 @pytest.fixture(scope="module")
@@ -45,6 +48,7 @@ def test_every_old_name_went_in_its_version(history: ApiHistory, table: list[Suc
         row.old
         for row in table
         if "*" not in row.old
+        and not (is_module(row.old) and not history.mask(row.old))
         and (history.mask(row.old) or not (row.old.startswith(UNLISTED) or row.source.endswith(OF_ADD_ONS)))
         and (history.exists(row.old, before[row.version]) is False or history.exists(row.old, row.version))
     ]
@@ -344,6 +348,24 @@ def test_a_date_between_two_known_versions_comes_from_the_table(
     assert Successors(table, history, "5.1", {}).dated(span) == ("3.6", "4.0")
 
 
+@pytest.mark.parametrize(
+    ("setting", "dates"),
+    [
+        ("CyclesMaterialSettings.sample_as_light", ("3.4", "3.5")),
+        ("CyclesMaterialSettings.displacement_method", ("4.0", "4.1")),
+        ("CyclesCurveRenderSettings.primitive", ("2.83", "2.90")),
+        ("CyclesCameraSettings", ("3.6", "4.0")),
+        ("Camera.cycles", ("3.6", "4.0")),
+        ("CyclesRenderSettings.sampling_pattern:SOBOL", ("3.4", "4.2")),
+    ],
+)
+def test_settings_that_the_stubs_leave_out_are_dated_by_the_table(
+    history: ApiHistory, table: list[Succession], setting: str, dates: tuple[str, str]
+) -> None:
+    span = next(span for span in history.removed_from("5.1") if span.path == f"bpy.types.{setting}")
+    assert Successors(table, history, "5.1", {}).dated(span) == dates
+
+
 def test_rows_that_lead_to_each_other_end(history: ApiHistory) -> None:
     rows = [Succession("a.x", ("a.y",), "", "2.80", "s"), Succession("a.y", ("a.x",), "", "2.80", "s")]
     assert Successors(rows, history, "5.1", {}).of("a.x") == []
@@ -357,6 +379,18 @@ def test_members_of_python_classes_that_the_table_names_exist(
     targets = {target for row in table for target in row.new if target.startswith("_bpy_internal.")}
     assert len(targets) > 15
     assert targets <= known
+
+
+@pytest.mark.blender
+def test_modules_that_the_table_says_to_be_gone_are_there_with_an_underscore(
+    tmp_path: Path, table: list[Succession]
+) -> None:
+    names = [row.old for row in table if row.source == OF_MODULES]
+    assert len(names) > 10
+    told = run_statements(tmp_path, [f"import {start}{name}" for name in names for start in ("", "_")])
+    errors = [error for error, *_ in told]
+    assert not any(errors[1::2])
+    assert all(error.startswith("ModuleNotFoundError") for error in errors[::2])
 
 
 @pytest.mark.parametrize("text", ["", "old,new\n", "old,new,how,version,source\na,b\n"])

@@ -14,6 +14,7 @@ from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSym
 
 USE = Successor("bpy.types.A.b", "", "2.80", "")
 HOW = Successor("bpy.types.A.b", "Call it with True.", "4.0", "")
+LISTED = Successor("bpy.types.A.b", "", "4.2", "listing of the API, 4.2")
 NONE = Successor("", "It is always on.", "2.80", "")
 
 
@@ -33,6 +34,7 @@ NONE = Successor("", "It is always on.", "2.80", "")
             "removed in 4.0. Use",
         ),  # it may have been in 3.6 too
         (RemovedSymbol("x", "3.4", "3.4", "4.2", (USE,)), "gone by 4.2 (last seen in 3.4). Use"),
+        (RemovedSymbol("x", "3.4", "3.4", "4.2", (LISTED,)), "gone by 4.2 (last seen in 3.4). Use"),
         (
             RemovedSymbol("x", "2.79", "2.79", "2.80", (NONE,)),
             "removed in 2.80 (last in 2.79). Nothing takes its place. It is always on.",
