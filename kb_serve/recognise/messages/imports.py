@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.resolving.chain_starts import ROOTS
 
@@ -27,27 +26,21 @@ class Imports:
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds what other versions had of it."""
         for match in forms.first_matches(forms.NO_MODULE, query):
-            self.tell_if_gone(match["module"], recognition)
-            self._tell_if_renamed(match["module"], recognition)
+            if not self.tell_if_gone(match["module"], recognition):
+                self._tell_if_renamed(match["module"], recognition)
         for match in forms.first_matches(forms.NO_IMPORT, query):
             self.tell_if_gone(f"{match['module']}.{match['name']}", recognition)
         for match in forms.first_matches(forms.NOT_DEFINED, query):
             self._tell_where(match["name"], recognition)
 
     def _tell_if_renamed(self, module: str, recognition: Recognition) -> None:
-        """What Blender calls one of its internal modules now: with an underscore. Where scripts use a public module of
-        the same letters, that is what they mean.
-        """
+        """What Blender calls one of its internal modules now, where it is not known since when: with an underscore."""
         files = (f"modules/_{module}.py", f"modules/_{module}/%")
-        if "." in module or not self._reader.rows(_HAS_FILE, *files):
-            return
-        recognition.notes.append(
-            f"`{module}` is one of Blender's internal modules, which have an underscore now: `import _{module}`. They "
-            "change without notice."
-        )
-        for _, path in self._reader.by_key(key(module)):
-            if (entry := self._reader.entry(path)) and entry.kind == "module":
-                recognition.add(path, 0.97, "error message")
+        if "." not in module and self._reader.rows(_HAS_FILE, *files):
+            recognition.notes.append(
+                f"`{module}` is one of Blender's internal modules, which have an underscore now: `import _{module}`. "
+                "They change without notice."
+            )
 
     def _tell_where(self, name: str, recognition: Recognition) -> None:
         """Where a name is imported from that a script uses without having done so."""
@@ -75,7 +68,9 @@ class Imports:
         public = [entry for entry, owner in owners.items() if owner and owner.kind == "module"]
         return next(iter(self._reader.heaviest(public)), None)
 
-    def tell_if_gone(self, path: str, recognition: Recognition) -> None:
-        """Adds a module, or a name in one, that only other versions have."""
-        if not self._reader.entry(path) and (removed := self._removed.of_path(path)):
+    def tell_if_gone(self, path: str, recognition: Recognition) -> bool:
+        """Adds a module, or a name in one, that only other versions have; returns whether it is one."""
+        removed = None if self._reader.entry(path) else self._removed.of_path(path)
+        if removed:
             recognition.add_removed(removed)
+        return removed is not None

@@ -43,7 +43,7 @@ _PROPERTY_NAMES = (
         r"""\s*(?:(?:data_)?path\s*=\s*)?["'](\w+)["']"""
     ),
 )
-_IMPORT = re.compile(r"\bimport\s+([a-z][\w.]*)")
+_IMPORT = re.compile(r"\bimport\s+([a-z_][\w.]*(?:\s*,\s*[a-z_][\w.]*)*)")
 _FROM = re.compile(r"\bfrom\s+([a-z][\w.]*)\s+import\s+\(?\s*(\w+(?:\s*,\s*\w+)*)")
 _KEYWORD = re.compile(r"""\W*(\w+)\s*=\s*(['"])([A-Z][A-Z0-9_]+)\2\W*""")  # alone
 _MOST_QUOTED = 12
@@ -368,11 +368,11 @@ class OldCode:
 
     def in_imports(self, text: str) -> Iterator[RemovedSymbol]:
         """Removed modules, and removed names of modules, that are imported."""
-        paths = [match[1] for match in _IMPORT.finditer(text)]
+        paths = [name.strip() for match in _IMPORT.finditer(text) for name in match[1].split(",")]
         for match in _FROM.finditer(text):
             paths += [match[1], *(f"{match[1]}.{name.strip()}" for name in match[2].split(","))]
         for path in paths[:_MOST_QUOTED]:
-            if removed := self._removed.of_path(path):
+            if removed := self._removed.of_path(path) or self._removed.of_path(path.partition(".")[0]):
                 yield removed
 
     def in_keyword(self, text: str) -> Iterator[RemovedSymbol]:
@@ -382,7 +382,7 @@ class OldCode:
         """
         if not (match := _KEYWORD.fullmatch(text)):
             return
-        today = (owner for owner, *_ in self._reader.enum_owners(key(match[3])))
+        today = (owner for owner, item, _ in self._reader.enum_owners(key(match[3])) if item == match[3])
         if any(owner.endswith((f"({match[1]})", f".{match[1]}")) for owner in today):
             return
         end = f"({match[1]}):{match[3]}"

@@ -43,6 +43,11 @@ CODE = [
     ("bpy.types.INFO_MT_file_import.append(f)", f"{T}INFO_MT_file_import", "2.80"),
     ("import bgl, blf", "bgl", "5.0"),
     ("from bgl import glEnable, glDisable", "bgl.glDisable", "5.0"),
+    ("import rna_info", "rna_info", "5.0"),
+    ("import bpy, rna_xml", "rna_xml", "5.0"),
+    ("from bl_ui_utils.layout import operator_context", "bl_ui_utils", "5.0"),
+    ("from bge import logic", "bge", "2.80"),
+    ("from rna_prop_ui import rna_idprop_ui_prop_get", "rna_prop_ui.rna_idprop_ui_prop_get", "3.0"),
     ("steps_per_second", f"{T}RigidBodyWorld.steps_per_second", "2.91"),
     # keyword arguments, by name and by place
     ("bpy.ops.mesh.primitive_cube_add(radius=2)", "bpy.ops.mesh.primitive_cube_add(radius)", "2.80"),
@@ -68,6 +73,7 @@ CODE = [
     ("AttributeError: 'RNA_Types' object has no attribute 'Lamp'", f"{T}Lamp", "2.80"),
     ("AttributeError: module 'bpy.types' has no attribute 'Lamp'", f"{T}Lamp", "2.80"),
     ("ModuleNotFoundError: No module named 'bgl'", "bgl", "5.0"),
+    ("ModuleNotFoundError: No module named 'bge'", "bge", "2.80"),
     (
         'TypeError: Converting py args to operator properties: keyword "view_align" unrecognized\n'
         "    bpy.ops.mesh.primitive_cone_add(view_align=True)",
@@ -234,6 +240,8 @@ def test_shaders_have_no_dimension_in_their_names(kb: KnowledgeBase, written: st
         ("layout.label(icon='SEQUENCE_COLOR_01')", "(icon='STRIP_COLOR_01')`"),
         ("layout.operator('a.b', icon='OUTLINER_DATA_LAMP')", "(icon='OUTLINER_DATA_LIGHT')`"),
         ("layout.prop(ob, 'name', icon='LIGHTPROBE_CUBEMAP')", "(icon='LIGHTPROBE_SPHERE')`"),
+        ("layout.label(icon='ZOOMIN')", "(icon='ADD')`"),
+        ("layout.label(icon='MATCAP_01')", "Nothing takes its place. Matcaps are no icons"),
     ],
 )
 def test_icons_have_successors_wherever_they_are_given(kb: KnowledgeBase, written: str, instead: str) -> None:
@@ -276,6 +284,7 @@ def is_on(node: bpy.types.Node, name: str) -> bool:
         ("imp.reload(module)", "Write it with `importlib.reload`"),
         ("ModuleNotFoundError: No module named 'imp'", "Write it with `importlib.reload`"),
         ("from cgi import escape", "Write it with `urllib.parse`"),
+        ("import rna_info", "Write `_rna_info`"),
     ],
 )
 def test_where_something_is_to_be_used_instead_nothing_is_not_said(

@@ -111,6 +111,7 @@ def test_plain_words_are_no_removed_class(kb: KnowledgeBase) -> None:
         ("bpy.ops.object.convert(target='GPENCIL')", "`bpy.ops.object.convert(target='GREASEPENCIL')`"),
         # An argument by itself: of the function that is used most.
         ("icon='OUTLINER_OB_LAMP'", "`bpy.types.UILayout.prop(icon='OUTLINER_OB_LIGHT')`"),
+        ("icon='ZOOMOUT'", "`bpy.types.UILayout.prop(icon='REMOVE')`"),
     ],
 )
 def test_a_lost_value_of_an_argument_is_replaced(kb: KnowledgeBase, query: str, use: str) -> None:
