@@ -96,7 +96,7 @@ class RemovedSymbolLookup:
         span = self._reader.removed(path)
         if span is None or self._reader.still_works(path):
             return None
-        successors = tuple(self._reader.successors(path) or self._of_same_items(path))
+        successors = tuple(self._reader.successors(path) or dict.fromkeys(self._of_same_items(path)))
         similar = () if successors else self._similar(path)
         return RemovedSymbol(path, *span, successors, similar)
 
@@ -111,13 +111,11 @@ class RemovedSymbolLookup:
         return tuple((f"{whole}({name})", 1.0) for name in alike)
 
     def _of_same_items(self, path: str) -> Iterator[Successor]:
-        """What took the place of an item of an argument, or why nothing did, where that is known of a property with the
-        same items, which may have kept it longer.
+        """What took the place of an item, or why nothing did, where that is known of a property with the same items,
+        which may have kept it longer.
         """
-        argument, item = argument_of(path), item_of(path)
-        symbol = self._reader.symbol(plain_path(path)) if argument and item else None
-        parameters = symbol.parameters if symbol else ()
-        items = {i.identifier for p in parameters if p.name == argument for i in p.enum_items}
+        item = item_of(path)
+        items = self._items_beside(path) if item else frozenset()
         if not items:
             return
         for other in self._reader.removed_named(item):
@@ -131,6 +129,15 @@ class RemovedSymbolLookup:
                     yield replace(successor, target=f"{path.removesuffix(item)}{new}")
                 elif not new:
                     yield successor
+
+    def _items_beside(self, path: str) -> frozenset[str]:
+        """The items of today where an item of a property or an argument was."""
+        argument = argument_of(path)
+        symbol = self._reader.symbol(plain_path(path) if argument else split_path(path)[0])
+        if symbol is None:
+            return frozenset()
+        owners = (p for p in symbol.parameters if p.name == argument) if argument else (symbol,)
+        return frozenset(i.identifier for owner in owners for i in owner.enum_items)
 
     def of_member(self, owner: str, name: str) -> RemovedSymbol | None:
         """A removed member of a class, of its bases, of what they were called before, or of a module.

@@ -1,4 +1,4 @@
-"""Modules that the Python which Blender brings has lost."""
+"""Modules that Blender, or the Python which it brings, has lost."""
 
 from __future__ import annotations
 
@@ -21,6 +21,16 @@ def test_they_are_found_where_python_refuses_them(rule_checker: Checker, tmp_pat
     refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
     assert [one.span.line for one in rule_checker.check("\n".join(lines))] == refused
     assert len(refused) == len(LOST_MODULES) + 3
+
+
+def test_those_of_blender_say_what_they_are_called(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = ["import rna_info, bpy_types", "from bl_ui_utils.layout import operator_context", "import bge"]
+    lines += ["import _rna_info", "from _bl_ui_utils.layout import operator_context"]
+    refused = {at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error}
+    findings = rule_checker.check("\n".join(lines))
+    assert {one.span.line for one in findings} == refused == {1, 2, 3}
+    told = "\n".join(one.message for one in findings)
+    assert all(part in told for part in ("`_rna_info`", "`_bl_ui_utils`", "`bpy.types`", "game engine"))
 
 
 @pytest.mark.parametrize(

@@ -241,11 +241,17 @@ def test_shaders_have_no_dimension_in_their_names(kb: KnowledgeBase, written: st
         ("layout.operator('a.b', icon='OUTLINER_DATA_LAMP')", "(icon='OUTLINER_DATA_LIGHT')`"),
         ("layout.prop(ob, 'name', icon='LIGHTPROBE_CUBEMAP')", "(icon='LIGHTPROBE_SPHERE')`"),
         ("layout.label(icon='ZOOMIN')", "(icon='ADD')`"),
+        ("bpy.types.Node.bl_icon = 'SEQUENCE_COLOR_05'", "bl_icon = 'STRIP_COLOR_05'`"),
         ("layout.label(icon='MATCAP_01')", "Nothing takes its place. Matcaps are no icons"),
     ],
 )
 def test_icons_have_successors_wherever_they_are_given(kb: KnowledgeBase, written: str, instead: str) -> None:
     assert any(instead in note for note in kb.query(written).notes)
+
+
+def test_what_several_properties_tell_of_an_item_is_said_once(kb: KnowledgeBase) -> None:
+    notes = kb.query("keymap_items.new('a.b', type='ACTIONMOUSE', value='PRESS')").notes
+    assert sum(note.count("(type='LEFTMOUSE')") for note in notes) == 1
 
 
 def test_passes_have_the_names_that_are_told(kb: KnowledgeBase) -> None:
