@@ -25,6 +25,7 @@ _MOST_OWNERS = 8  # that are compared
 _NO_ITEM = "`{name}` is not an item of this enum; closest: {similar}."
 _LABELLED = "`{name}` is not an item of this enum; of that label: {items}."
 _NOT_NOW = "`{name}` is a value of `{owner}`, which present data do not allow."
+_NEVER = "RNA lists `{name}` for `{owner}`, and no {thing} comes to have it.{instead}"
 _OF_OPERATORS = "to operator properties"
 _OF_CLASSES = "validating class"  # what Blender says of classes that it is given to register
 
@@ -77,13 +78,31 @@ class Values:
             yield self._of_another_version(owner, name, items)
             yield self._enum_values.condition(owner, name)
             if self._enum_values.has(owner, name):
-                yield _NOT_NOW.format(name=name, owner=owner)
+                yield self._never_had(owner, name, items) or _NOT_NOW.format(name=name, owner=owner)
             labelled = ", ".join(f"`{item}`" for item in self._labelled(owner, name, items)[:_FEW])
             yield labelled and _LABELLED.format(name=name, items=labelled)
         similar = _closest(name, items) or self._explaining(owners, name)
         yield similar and _NO_ITEM.format(name=name, similar=similar)
         others = ", ".join(f"`{other}`" for other in self._taking_only(name)) if owners else ""
         yield others and f"`{name}` is a value of {others}."
+
+    def _never_had(self, owner: str, name: str, items: Sequence[str]) -> str:
+        """That nothing comes to have a value, as a property with the same items tells that Blender alone sets; empty
+        where none does.
+        """
+        for other, identifier, _ in self._reader.enum_owners(key(name)):
+            symbol = self._reader.symbol(other) if identifier == name and "(" not in other else None
+            if symbol is None or "readonly" not in symbol.flags:
+                continue
+            taken = {item.identifier: item.name for item in symbol.enum_items if item.is_taken}
+            if name in taken or not taken.keys() >= {*items}:
+                continue
+            label = next(item.name for item in symbol.enum_items if item.identifier == name)
+            meant = [item for item, called in taken.items() if called == label]
+            instead = f" Write `{meant[0]}`." if len(meant) == 1 else ""
+            thing = symbol.owner.rpartition(".")[2]
+            return _NEVER.format(name=name, owner=owner, thing=thing, instead=instead)
+        return ""
 
     def _labelled(self, owner: str, name: str, items: Sequence[str]) -> list[str]:
         """The other items whose label is a name, where spelling does not tell just these: the label is surer."""

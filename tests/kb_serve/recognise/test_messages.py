@@ -536,6 +536,19 @@ def test_a_mode_that_the_active_object_has_not_is_no_misspelt_one(kb: KnowledgeB
     assert second.startswith("The active object has no such mode")
 
 
+@pytest.mark.blender
+def test_a_mode_that_no_object_has_leads_to_the_one_of_its_label(kb: KnowledgeBase) -> None:
+    bpy = pytest.importorskip("bpy")
+    bpy.ops.object.grease_pencil_add()
+    with pytest.raises(TypeError) as caught:
+        bpy.ops.object.mode_set(mode="EDIT_GPENCIL")
+    assert (
+        kb.query(f"TypeError: {caught.value}").notes[0].endswith("no Object comes to have it. Write `EDIT`.")
+    )
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
 @pytest.mark.parametrize(
     ("message", "told"),
     [
