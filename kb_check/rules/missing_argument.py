@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.api_names import GROUPS
 from kb_check.calls import calls, calls_of_several
 from kb_check.findings import Finding
 from kb_check.literals import number
@@ -34,7 +35,7 @@ _MARKS = ("/", "*", "=")
 _NEED_ALL = frozenset(
     {
         "mathutils.kdtree.KDTree", "mathutils.kdtree.KDTree.find_n", "mathutils.kdtree.KDTree.find_range",
-        "mathutils.kdtree.KDTree.insert",
+        "mathutils.kdtree.KDTree.insert", f"{GROUPS}.move", f"{GROUPS}.remove",
     }
 )  # fmt: skip
 # Parameters that may be left out though the reference shows no default: a turn or a scale of a 2 × 2 matrix has no

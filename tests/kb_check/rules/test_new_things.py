@@ -50,6 +50,11 @@ _SIMULATED = (
     _ZONE + "second = tree.nodes.new('GeometryNodeSimulationOutput')\nfirst.pair_with_output(second)\n"
 )
 _RESET = "bpy.ops.wm.read_factory_settings(use_empty=True)\n"
+_PARTS = (
+    "class Part(bpy.types.PropertyGroup): pass\n"
+    "bpy.utils.register_class(Part)\n"
+    "bpy.types.Scene.parts = bpy.props.CollectionProperty(type=Part)\n"
+)
 WRONG = {
     "empty-pointer": [
         _FLUID + "fluid.domain_settings.domain_type = 'LIQUID'",
@@ -169,6 +174,8 @@ WRONG = {
     "missing-argument": [
         _CUBE + "bpy.context.object.data.color_attributes.new('x', 'FLOAT_COLOR')",
         _CUBE + "data = bpy.context.object.data\ndata.attributes.new(name='x', type='FLOAT')",
+        _PARTS + "bpy.context.scene.parts.move(0)",
+        _PARTS + "bpy.context.scene.parts.remove()",
     ],
     "read-only": [
         _STRIPS
