@@ -265,6 +265,16 @@ def test_successors_exist_in_every_version_that_can_be_built(
         ("bpy.types.PythonController", "5.1", [""]),
         ("bpy.types.PythonController.module", "5.1", [""]),
         ("bpy.types.GameFloatProperty.value", "5.1", [""]),
+        (
+            "bpy.ops.sculpt.brush_stroke(mode):SMOOTH",
+            "5.1",
+            ["bpy.ops.sculpt.brush_stroke(brush_toggle):SMOOTH"],
+        ),
+        (
+            "bpy.types.SpeedControlSequence.use_as_speed",
+            "4.3",
+            ["bpy.types.SpeedControlSequence.speed_control"],
+        ),
         # Of what was renamed, and later lost it.
         ("bpy.types.PointLamp.falloff_type", "5.1", ["bpy.types.ShaderNodeLightFalloff"]),
         ("bpy.types.UserPreferencesSystem.multi_sample", "5.1", ["bpy.types.PreferencesSystem.viewport_aa"]),
