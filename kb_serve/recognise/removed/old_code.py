@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
 from kb_build.symbols.api_names import OPERATORS, SIDES, TYPES, interface_part
-from kb_build.symbols.paths import is_socket, socket_node
+from kb_build.symbols.paths import is_socket, socket_node, split_path
 from kb_serve.recognise.removed.lost_names import LostName, LostNames, is_telling
 from kb_serve.recognise.resolving.call_texts import arguments, texts_in
 from kb_serve.recognise.resolving.chain_starts import ROOTS
@@ -82,6 +82,7 @@ class OldCode:
         return (
             self._path(chain)
             or self._class(chain)
+            or self._function(chain)
             or _old(chain, self._lost_names.of_named_data(chain))
             or self._member(chain, readings)
             or self._socket(chain)
@@ -155,6 +156,19 @@ class OldCode:
             return None
         removed = self._removed.of_path(TYPES + chain.root)
         return OldName(removed, chain.steps) if removed else None
+
+    def _function(self, chain: Chain) -> OldName | None:
+        """A function that one module had, called by its name alone: ``rna_idprop_ui_prop_get(bone, "x")``."""
+        if not chain.steps or chain.steps[0].kind != "call" or not is_telling(chain.root):
+            return None
+        named = self._reader.removed_named(chain.root)
+        of_modules = [path for path in named if self._is_of_module(path)]
+        removed = self._removed.of_path(of_modules[0]) if len(of_modules) == 1 else None
+        return OldName(removed, chain.steps[1:]) if removed else None
+
+    def _is_of_module(self, path: str) -> bool:
+        owner = self._reader.entry(split_path(path)[0])
+        return owner is not None and owner.kind == "module" and not path.startswith(OPERATORS)
 
     def _path(self, chain: Chain) -> OldName | None:
         """A removed symbol that the chain spells out from its root: ``bgl.glEnable``, ``bpy.ops.wm.addon_enable``."""

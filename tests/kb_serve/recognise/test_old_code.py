@@ -48,6 +48,8 @@ CODE = [
     ("from bl_ui_utils.layout import operator_context", "bl_ui_utils", "5.0"),
     ("from bge import logic", "bge", "2.80"),
     ("from rna_prop_ui import rna_idprop_ui_prop_get", "rna_prop_ui.rna_idprop_ui_prop_get", "3.0"),
+    ("rna_idprop_ui_prop_get(bone, 'x')", "rna_prop_ui.rna_idprop_ui_prop_get", "3.0"),
+    ("face_random_points(9, faces)", "bpy_extras.mesh_utils.face_random_points", "2.80"),
     ("steps_per_second", f"{T}RigidBodyWorld.steps_per_second", "2.91"),
     # keyword arguments, by name and by place
     ("bpy.ops.mesh.primitive_cube_add(radius=2)", "bpy.ops.mesh.primitive_cube_add(radius)", "2.80"),
