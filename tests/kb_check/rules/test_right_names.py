@@ -70,7 +70,8 @@ def test_a_name_is_not_sure_where_its_values_went_too(rule_checker: Checker, giv
         "mat = bpy.data.materials.new('x')\nmat.transparency_method = 'Z_TRANSPARENCY'",
         "tex = bpy.data.materials.new('x').node_tree.nodes.new('ShaderNodeTexVoronoi')\ntex.coloring = 'CELLS'",
         "con = bpy.context.object.constraints.new('ARMATURE')\ncon.target = bpy.context.object",
-        "out = bpy.context.scene.compositing_node_group.nodes.new('CompositorNodeOutputFile')\n"
+        "group = bpy.data.node_groups.new('x', 'CompositorNodeTree')\n"
+        "out = group.nodes.new('CompositorNodeOutputFile')\n"
         "out.file_slots[0].path = 'a'",
     ],
 )
