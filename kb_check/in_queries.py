@@ -43,6 +43,7 @@ _RULES = (
 _NEVER_TRUE = "never-true"  # a warning, as Blender refuses nothing
 _NO_VALUE = "unknown-value"
 _IS_NONE = re.compile(NO_VALUE)  # what is said of a value that no Blender has
+_ARGUMENT = "("  # in the path of an argument: of the values of properties an answer tells by itself
 _GONE = "unknown-attribute"  # what is wrong behind a name that is gone, its successor may take otherwise
 _SIGNS = "=([*"  # one of which such code has
 # What code does that is more than a name.
@@ -158,7 +159,8 @@ def _news(findings: Sequence[Finding]) -> Iterator[Finding]:
     for finding in findings:
         span = finding.span
         is_behind = span.line in gone and gone[span.line] < span.column
-        is_value = finding.rule == _NO_VALUE and _IS_NONE.search(finding.message) is not None
+        is_value = finding.rule == _NO_VALUE and _ARGUMENT in finding.symbol
+        is_value = is_value and _IS_NONE.search(finding.message) is not None
         is_told = finding.rule == _GONE or (bool(finding.absent) and not is_value) or is_behind
         is_wrong = finding.severity == "error" or is_value or finding.rule == _NEVER_TRUE
         if is_wrong and span.line > 1 and not is_told:

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
         ("blf.size(0, 20, 72)", "takes 2 arguments by place"),
         ("pb.rotation_euler = (0, 0)", "`bpy.types.PoseBone.rotation_euler` takes 3 floats"),
         ("nodes.new('ShaderNodeGlass')", "Closest: `ShaderNodeBsdfGlass`."),
-        ("scene.render.engine = 'BLENDER_GAME'", "It takes `BLENDER_EEVEE`"),
         ("bpy.ops.object.mode_set(mode='EDIT_GPENCIL')", "write 'EDIT'."),
         ("bpy.context.mode == 'EDIT_GPENCIL'", "'EDIT_GREASE_PENCIL' has its label."),
         ("if obj.mode == 'EDIT_GPENCIL':", "the comparison never matches it."),
