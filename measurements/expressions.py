@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
+from kb_build.symbols.paths import plain_path
 from kb_serve.knowledge_base import KnowledgeBase
 from measurements.blender_scripts import read_all, scripts_folder, why_none
 from measurements.report import ReportPart, TargetFigure
@@ -111,7 +112,8 @@ def _of_variables(analysis: Analysis) -> Iterator[tuple[str, str, str, Sequence[
         if len(source) <= _LONGEST and source.startswith(own) and root not in analysis.resolutions:
             nameless = _NAMELESS + source[len(own) :]
             near = [line for at, name, line in bindings if name == own and 0 < root.lineno - at <= _NEAR]
-            yield source, nameless, near[-1] if near else "", resolution.symbols
+            whole = [plain_path(path) for path in resolution.symbols]  # parameters are in their operator's answer
+            yield source, nameless, near[-1] if near else "", whole
 
 
 def _bindings(tree: ast.Module) -> Iterator[tuple[int, str, str]]:

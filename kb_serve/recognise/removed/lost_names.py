@@ -29,7 +29,8 @@ _USED = 10.0  # weight of a class that scripts use much
 _HELD_BY = (TYPES, "bmesh.types.")
 _THEME = f"{TYPES}Theme"  # its hundreds of colours are called like everything else
 _DATA = f"{TYPES}Object.data"
-_INSTANCES = frozenset({"self", "cls"})  # of the script's own classes
+# Instances of the script's own classes, and what a button calls its operator with: no class of Blender's lost theirs.
+_INSTANCES = frozenset({"self", "cls", "props", "op"})
 
 
 class LostName(NamedTuple):

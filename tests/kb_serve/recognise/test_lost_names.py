@@ -72,7 +72,13 @@ def test_what_may_well_be_meant_is_not_denied(kb: KnowledgeBase, written: str, f
 
 @pytest.mark.parametrize(
     "written",
-    ["self.data.use_auto_smooth = True", "MyTool.use_auto_smooth = True", "x.frobnicate.use_it = True"],
+    [
+        "props.mode = 'GROW'",
+        "op.type = 'BACK'",
+        "self.data.use_auto_smooth = True",
+        "MyTool.use_auto_smooth = True",
+        "x.frobnicate.use_it = True",
+    ],
 )
 def test_the_scripts_own_is_left_alone(kb: KnowledgeBase, written: str) -> None:
     assert [note for note in kb.query(written).notes if "does not exist" in note] == []
