@@ -112,7 +112,9 @@ def _of_variables(analysis: Analysis) -> Iterator[tuple[str, str, str, Sequence[
         if len(source) <= _LONGEST and source.startswith(own) and root not in analysis.resolutions:
             nameless = _NAMELESS + source[len(own) :]
             near = [line for at, name, line in bindings if name == own and 0 < root.lineno - at <= _NEAR]
-            whole = [plain_path(path) for path in resolution.symbols]  # parameters are in their operator's answer
+            whole = [
+                plain_path(path) for path in resolution.symbols
+            ]  # parameters are in their operator's answer
             yield source, nameless, near[-1] if near else "", whole
 
 
