@@ -6,8 +6,9 @@ import ast
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import called_name, children
+from kb_build.flow.trees import called_name, children, run_with
 from kb_check.line_ranges import LineRanges
+from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _BACKGROUND = "bpy.app.background"
-_APART = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
 
 
 def is_called_by_others(script: Script) -> bool:
@@ -35,6 +35,7 @@ def _runs(body: Sequence[ast.stmt]) -> bool:
     )
 
 
+@once_per_script
 def lines_of_others(script: Script) -> LineRanges:
     """The lines whose context others give."""
     return LineRanges([*_given_context(script), *_uncalled(script)])
@@ -63,19 +64,10 @@ def _called(script: Script) -> set[str]:
     called: set[str] = set()
     waiting: list[ast.AST] = [script.tree]
     for each in waiting:
-        names = {called_name(node) for node in _run_with(each)} - called
+        names = {called_name(node) for node in run_with(children(each))} - called
         called |= names
         waiting += chain.from_iterable(defined.get(name, ()) for name in names)
     return called
-
-
-def _run_with(node: ast.AST) -> Iterator[ast.AST]:
-    """What lies in a module or function, but for what is only defined there."""
-    waiting = children(node)
-    for each in waiting:
-        yield each
-        if not isinstance(each, _APART):
-            waiting += children(each)
 
 
 def _overrides(node: ast.With | ast.AsyncWith) -> bool:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Instance
 from kb_check.literals import number, written
 from kb_check.made_here import bindings, callee_path, member_path, named_words
 from kb_check.script import once_for_each
@@ -46,7 +45,7 @@ _TRANSPOSED = f"{MATRIX}.transposed"
 
 def size_of(script: Script, node: ast.expr, depth: int = _DEEPEST) -> Size:
     """The size of what an expression gives; () where that is no vector and no matrix, or not sure."""
-    cls = class_of(script, node)
+    cls = script.class_of(node)
     if cls not in {VECTOR, MATRIX} or not depth or not _RESIZING.isdisjoint(named_words(script)):
         return ()
     size: Size = ()
@@ -64,12 +63,6 @@ def size_of(script: Script, node: ast.expr, depth: int = _DEEPEST) -> Size:
         case _:
             pass
     return size
-
-
-def class_of(script: Script, node: ast.expr) -> str:
-    """The class that an expression surely is an instance of; empty where that is not sure."""
-    kind = script.type_of(node)
-    return kind.cls if isinstance(kind, Instance) and kind.sure else ""
 
 
 @once_for_each
@@ -128,7 +121,7 @@ def _of_rows(script: Script, node: ast.expr) -> Size:
 
 
 def _of_member(script: Script, node: ast.Attribute) -> Size:
-    if class_of(script, node.value) == VECTOR and _AXES.issuperset(node.attr) and len(node.attr) > 1:
+    if script.class_of(node.value) == VECTOR and _AXES.issuperset(node.attr) and len(node.attr) > 1:
         return (len(node.attr),)
     path = member_path(script, node)
     if path == "mathutils.Matrix.translation":

@@ -14,7 +14,7 @@ from bisect import bisect_right
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.expressions import is_decided
-from kb_build.flow.trees import called_name, children, walk
+from kb_build.flow.trees import APART, called_name, children, run_with, walk
 from kb_build.flow.types import UNKNOWN, LocalClass, LocalFunction, literal
 from kb_check.computing import RUNNING, STORING
 
@@ -48,7 +48,6 @@ _PASSING_ERRORS = frozenset(
 )  # fmt: skip
 _LEAVING = frozenset({"exit", "quit", "_exit", "quit_blender"})
 _LOOPS = (ast.For, ast.AsyncFor, ast.While)
-_APART = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
 
 
 class RunReach:
@@ -210,7 +209,7 @@ def _leaving(tree: ast.Module) -> set[ast.AST]:
     returning: set[ast.AST] = set()
     breaking: set[ast.AST] = set()
     for node in reversed([*walk(tree)]):  # inner ones come before those around them
-        if isinstance(node, _APART):
+        if isinstance(node, APART):
             continue
         below = children(node)
         if isinstance(node, ast.Return) or called_name(node) in _LEAVING or not returning.isdisjoint(below):
@@ -282,14 +281,7 @@ class _Part(NamedTuple):
 
 def _yields(function: ast.FunctionDef) -> bool:
     """Whether a call only makes an iterator."""
-    waiting: list[ast.AST] = [*function.body]
-    while waiting:
-        node = waiting.pop()
-        if isinstance(node, (ast.Yield, ast.YieldFrom)):
-            return True
-        if not isinstance(node, _APART):
-            waiting += children(node)
-    return False
+    return any(isinstance(node, (ast.Yield, ast.YieldFrom)) for node in run_with(function.body))
 
 
 def may_bring_names(tree: ast.Module, is_known: Callable[[str], bool]) -> bool:

@@ -10,6 +10,7 @@ from functools import cached_property, wraps
 from typing import TYPE_CHECKING, TypeVar, cast
 
 from kb_build.flow.trees import walk
+from kb_build.flow.types import Instance
 from kb_check.findings import Edit, Span
 from kb_check.raised import raised_by
 from kb_check.source import split_lines
@@ -144,6 +145,11 @@ class Script:
     def type_of(self, node: ast.expr) -> Type | None:
         """The type of an expression; None if it was not reached."""
         return self.analysis.types.get(node)
+
+    def class_of(self, node: ast.expr) -> str:
+        """The class of the API that an expression surely is an instance of; empty where it may be another."""
+        kind = self.type_of(node)
+        return kind.cls if isinstance(kind, Instance) and kind.sure else ""
 
     def is_doubted(self, span: Span) -> bool:
         """Whether what stands here may be for another Blender: the script asks for the version in an open way."""

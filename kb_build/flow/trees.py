@@ -40,6 +40,8 @@ class _Fields(dict[type[ast.AST], tuple[str, ...]]):
 
 
 _FIELDS = _Fields({ast.Constant: ()})
+# What is defined where it stands, and run elsewhere.
+APART = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
 # Lists in which None stands for what is not there; others hold nodes alone, or no nodes at all.
 _WITH_GAPS = frozenset({"keys", "kw_defaults"})
 
@@ -78,6 +80,15 @@ def walk(node: ast.AST) -> Iterator[ast.AST]:
     for each in waiting:
         waiting += children(each)
         yield each
+
+
+def run_with(parts: Iterable[ast.AST]) -> Iterator[ast.AST]:
+    """Some parts of a tree and all below them, but for what is only defined there: the bodies of functions, classes."""
+    waiting = [*parts]
+    for each in waiting:
+        yield each
+        if not isinstance(each, APART):
+            waiting += children(each)
 
 
 def nodes_in(parts: Iterable[ast.AST]) -> set[ast.AST]:

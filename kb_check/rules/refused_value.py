@@ -31,7 +31,6 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.flow.types import Instance
 from kb_build.index.analysis import words
 from kb_build.symbols.api_names import ID, NODE, OPERATORS
 from kb_build.symbols.api_names import TYPES as T
@@ -274,7 +273,7 @@ def _own_value(script: Script, statement: ast.stmt, node: ast.expr, setting: Sym
     """What a setting is on what the script has made, where it is not set: on what a name stands for, or on the data of
     the object that an operator has just made; None where that is not known.
     """
-    cls = _class_of(script, node)
+    cls = script.class_of(node)
     symbol = script.api.symbols.symbol(cls) if cls else None
     if symbol is None or not knows_all(script):
         return None
@@ -315,7 +314,7 @@ def _new_owner(script: Script, node: ast.expr, setting: Symbol) -> NewValue | No
         if symbol is None or symbol.type != "pointer":
             break
         node = alias(script, node.value)
-        cls = _class_of(script, node)
+        cls = script.class_of(node)
         for new in setting.new_values:
             is_of = any(script.api.is_class(f"{T}{made}") and cls == f"{T}{made}" for made in new.made)
             if is_of and not new.when and is_new(script, node):
@@ -354,7 +353,7 @@ def _works_on_a_scene(script: Script, node: ast.expr) -> bool:
         ):
             break
         node = alias(script, node.value)
-    return _class_of(script, node) == _SCENE
+    return script.class_of(node) == _SCENE
 
 
 @once_per_script
@@ -380,7 +379,7 @@ def _other_kind(script: Script, node: ast.expr, item: EnumItem) -> str:
         return other
     while kinds:
         node = alias(script, node)
-        cls = _class_of(script, node)
+        cls = script.class_of(node)
         symbol = script.api.symbols.symbol(cls) if cls else None
         if not is_only and any(script.api.descends(cls, f"{T}{kind}") for kind in kinds):
             return last_name(cls)
@@ -400,7 +399,7 @@ def _of_another(script: Script, node: ast.expr, kinds: set[str]) -> str:
     """What something is that was made for another thing: a constraint of an object, not of a bone; or empty."""
     values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else []
     makers = {callee_path(script, value) if isinstance(value, ast.Call) else "" for value in values}
-    cls = _class_of(script, node)
+    cls = script.class_of(node)
     for ancestor in script.api.lineage(cls) if cls and len(kinds) == 1 else ():
         symbol = script.api.symbols.symbol(ancestor)
         found = _OF.fullmatch(next(iter(kinds)))
@@ -417,12 +416,6 @@ def _of_another(script: Script, node: ast.expr, kinds: set[str]) -> str:
 def _labels_below(script: Script, base: str) -> set[str]:
     below = (script.api.symbols.symbol(path) for path in script.api.descendants(base))
     return {symbol.label.lower() for symbol in below if symbol}
-
-
-def _class_of(script: Script, node: ast.expr) -> str:
-    """The class that something surely is of; empty where it may be of several."""
-    kind = script.type_of(node)
-    return kind.cls if isinstance(kind, Instance) and kind.sure else ""
 
 
 RULE = Rule("refused-value", "error", "A value that is refused as things stand", _check)

@@ -47,6 +47,8 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _SOCKET = "NodeSocket"
+_LABEL = "{name} is what menus call {names}: `nodes.new` takes that."
+_ALIKE = "No node is called {name}: `nodes.new` takes {names}."
 _BLENDERS_OWN = re.compile(rf"({'|'.join(NODE_FAMILIES)}|NodeSocket)[A-Z]\w+")
 
 
@@ -74,13 +76,13 @@ def _check(script: Script) -> Iterator[Finding]:
                 and name not in own_names(script)
                 and (called := _labelled(script, call, name))
             ):
-                yield _label_finding(script, node, called)
+                yield _named_finding(script, node, called, _LABEL, sure=True)
                 continue
             if wanted != "type" and (cls := _socket_class(script, name)):
                 yield _socket_finding(script, call, node, cls)
                 continue
             if wanted == "type" and (alike := _of_the_same_words(script, call, name)):
-                yield _alike_finding(script, node, alike)
+                yield _named_finding(script, node, alike, _ALIKE, sure=False)
                 continue
             yield from _unknown(script, node, name)
     for row in script.missing("class"):
@@ -178,24 +180,16 @@ def _words_of(name: str) -> frozenset[str]:
     return frozenset(words(name.removeprefix(T))) - {"node"}
 
 
-def _alike_finding(script: Script, node: ast.Constant, alike: list[Symbol]) -> Finding:
-    names = [last_name(symbol.path) for symbol in alike]
-    told = (
-        f"No node is called {node.value!r}: `nodes.new` takes {' or '.join(f'`{name}`' for name in names)}."
-    )
+def _named_finding(
+    script: Script, node: ast.Constant, meant: list[Symbol], told: str, *, sure: bool
+) -> Finding:
+    """A name for which others are to be written: ``told`` says so, with ``{name}`` and ``{names}`` for both."""
+    names = [last_name(symbol.path) for symbol in meant]
     edit = script.renamed(node, names[0]) if len(names) == 1 else None
-    fix = Fix(f"Write {names[0]}", (edit,)) if edit else None
-    paths = tuple(symbol.path for symbol in alike)
-    return Finding(RULE.id, "error", script.span(node), told, paths[0], paths, fix)
-
-
-def _label_finding(script: Script, node: ast.Constant, called: list[Symbol]) -> Finding:
-    names = [last_name(symbol.path) for symbol in called]
-    told = f"{node.value!r} is what menus call {' or '.join(f'`{name}`' for name in names)}: `nodes.new` takes that."
-    edit = script.renamed(node, names[0]) if len(names) == 1 else None
-    fix = Fix(f"Write {names[0]}", (edit,), sure=True) if edit else None
-    paths = tuple(symbol.path for symbol in called)
-    return Finding(RULE.id, "error", script.span(node), told, paths[0], paths, fix)
+    fix = Fix(f"Write {names[0]}", (edit,), sure=sure) if edit else None
+    paths = tuple(symbol.path for symbol in meant)
+    message = told.format(name=repr(node.value), names=" or ".join(f"`{name}`" for name in names))
+    return Finding(RULE.id, "error", script.span(node), message, paths[0], paths, fix)
 
 
 def _refused(script: Script, call: CallSite, node: ast.expr, name: str) -> Iterator[Finding]:

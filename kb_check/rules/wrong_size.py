@@ -16,12 +16,13 @@ Not reported: sizes that are not written in the script or told by the API, scrip
 from __future__ import annotations
 
 import ast
+import re
 from typing import TYPE_CHECKING
 
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.literals import number
 from kb_check.made_here import callee_path
-from kb_check.mathutils_sizes import MATRIX, QUATERNION, SIZED, VECTOR, are_refused, class_of, size_of
+from kb_check.mathutils_sizes import MATRIX, QUATERNION, SIZED, VECTOR, are_refused, size_of
 from kb_check.rule import Rule
 from kb_check.tried import is_tried
 
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 
 _SIGNS: dict[type[ast.operator], str] = {ast.MatMult: "@", ast.Add: "+", ast.Sub: "-", ast.Mult: "*"}
 _AXES = "xyzw"
+_READ = re.compile(rf"[{_AXES}]+|translation")  # what a vector or a matrix of some sizes lacks
 _SPACE = 3  # components of what is in space
 _ROTATION, _WHOLE = (3, 3), (4, 4)
 _SIZES = range(2, 5)
@@ -68,11 +70,13 @@ def _operation(
     script: Script, node: ast.BinOp | ast.AugAssign, left: ast.expr, right: ast.expr
 ) -> Finding | None:
     sign = _SIGNS.get(type(node.op), "")
+    if not sign:
+        return None
     first, second = size_of(script, left), size_of(script, right)
-    if sign and first and second and are_refused(sign, first, second):
+    if first and second and are_refused(sign, first, second):
         told = f"`{sign}` is refused: {_words(first)} does not fit {_words(second)}.{_advice(first, second)}"
         return _finding(script, node, told, fix=_widened(script, left, first, right, second))
-    is_turned = sign == "@" and class_of(script, left) == QUATERNION and len(second) == 1
+    is_turned = sign == "@" and script.class_of(left) == QUATERNION and len(second) == 1
     if is_turned and second != (_SPACE,):
         told = f"A quaternion turns vectors of {_SPACE} components, and this one has {second[0]}."
         return _finding(script, node, told)
@@ -101,6 +105,8 @@ def _widened(script: Script, left: ast.expr, first: Size, right: ast.expr, secon
 
 
 def _member(script: Script, node: ast.Attribute) -> Finding | None:
+    if not _READ.fullmatch(node.attr):
+        return None
     size = size_of(script, node.value)
     if len(size) == 1 and set(node.attr) <= set(_AXES):
         lacking = [axis for axis in node.attr if _AXES.index(axis) >= size[0]]
@@ -139,7 +145,8 @@ def _made(script: Script, node: ast.expr, path: str) -> Finding | None:
 
 
 def _item(script: Script, node: ast.Subscript) -> Finding | None:
-    size, place = size_of(script, node.value), number(script, node.slice)
+    place = number(script, node.slice)
+    size = size_of(script, node.value) if isinstance(place, int) else ()
     if not size or not isinstance(place, int) or -size[0] <= place < size[0]:
         return None
     return _finding(script, node, f"{_words(size).capitalize()} has no item {place}.")
