@@ -122,6 +122,7 @@ clean: ## Remove what was made here (knowledge bases live elsewhere and stay)
 # What runs inside Blender is checked against stubs of the installed bpy.
 $(STUBS): $(STAMP) $(wildcard kb_check/stubs/*.py kb_build/flow/*.py)
 	@echo "Writing stubs of the installed bpy ..."
+	@mkdir -p .venv/stubs
 	@.venv/bin/simworlds kb build --no-pages --offline --out .venv/stubs/base.sqlite >.venv/stubs.log 2>&1 \
 	  || { cat .venv/stubs.log; exit 1; }
 	@.venv/bin/simworlds stubs --base .venv/stubs/base.sqlite --out .venv/stubs
