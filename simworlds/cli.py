@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 _FAILED, _INTERRUPTED = 2, 130
 _NO_ROOM = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
+# Numpy starts a thread for each core to multiply matrices with; that takes longer than the rest of loading it.
+_MATRIX_THREADS = "OPENBLAS_NUM_THREADS"
+_MULTIPLYING = frozenset({"bench"})  # commands that multiply large ones
 _COMPLETION = "_SIMWORLDS_COMPLETE"  # a shell sets it when it asks for completions
 
 
@@ -110,6 +113,8 @@ class _Lazy(click.Group):
         entry = _COMMANDS.get(cmd_name)
         if entry is None:
             return None
+        if cmd_name not in _MULTIPLYING:
+            os.environ.setdefault(_MATRIX_THREADS, "1")
         command = getattr(import_module(entry.module), entry.attribute)
         assert isinstance(command, click.Command)
         return command

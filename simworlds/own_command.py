@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import sys
-from importlib import metadata
 from pathlib import Path
-from urllib.parse import urlsplit
-from urllib.request import url2pathname
 
 from simworlds.operating_system import SYSTEM
 
@@ -31,6 +27,11 @@ def own_command() -> str:
 
 
 def _of_uvx() -> str:
+    import json  # noqa: PLC0415 - these load much, and are seldom needed
+    from importlib import metadata  # noqa: PLC0415
+    from urllib.parse import urlsplit  # noqa: PLC0415
+    from urllib.request import url2pathname  # noqa: PLC0415
+
     try:
         source = metadata.distribution(_NAME).read_text("direct_url.json")
         url: str = json.loads(source)["url"] if source else ""

@@ -15,9 +15,9 @@ def test_the_version_of_a_package_is_told() -> None:
 
 
 def test_run_from_its_source_it_has_an_unknown_version(monkeypatch: pytest.MonkeyPatch) -> None:
-    def version(name: str) -> str:
+    def distribution(name: str) -> metadata.Distribution:
         raise metadata.PackageNotFoundError(name)
 
     assert own_version() == metadata.version("simworlds")
-    monkeypatch.setattr(metadata, "version", version)
+    monkeypatch.setattr(metadata, "distribution", distribution)
     assert own_version() == "unknown"
