@@ -19,7 +19,7 @@ from kb_serve.answer.made_things import made_with
 from kb_serve.answer.pages import page_blocks
 from kb_serve.answer.practice import Practice
 from kb_serve.answer.render import MarkdownRenderer
-from kb_serve.answer.topic_overview import Topics
+from kb_serve.answer.topic_overview import STEPS, Topics
 from kb_serve.errors import BadQuery
 from kb_serve.query_limits import LEAST_TOKENS, LIMIT, MAX_LIMIT
 from kb_serve.rank.merging import SURE, QueryRanker, Ranking
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
     from kb_serve.answer.asked_values import AskedOf
     from kb_serve.answer.hits import Hit
+    from kb_serve.answer.topic_overview import TopicOverview
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.several import QuestionPart
 
@@ -40,6 +41,7 @@ _KNOWN_OF = 3  # hits for a description among which what one has to know of them
 _NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
 _SETTINGS = 2  # of a topic that are hits before its classes
 _LONGEST_WORD = 100  # no name of Blender's has as many letters
+_OPERATOR = re.compile(r"bpy\.ops\.\w+\.\w+")
 _COMMENT = re.compile(r"(?:^|(?<=\s))#\s[^\n]*\n", re.MULTILINE)  # of code, of which lines are joined
 _LONG_WORD = re.compile(rf"(\w{{{_LONGEST_WORD}}})\w+")
 
@@ -134,6 +136,12 @@ class AnswerComposer:
             yield from self._practice.of(hit.id, question, is_named=is_named)
             if not hit.is_page:
                 return
+
+    def _on_steps(self, overview: TopicOverview) -> list[str]:
+        """What one has to know of the operators that a topic's steps run: one that ends Blender where it runs here."""
+        steps = next((block.text for block in overview.blocks if block.name == STEPS), "")
+        said = (note for path in _OPERATOR.findall(steps) for note in self._practice.of(path, ""))
+        return [*dict.fromkeys(said)]
 
     def _found(
         self,
@@ -241,7 +249,7 @@ class AnswerComposer:
         hits = hits_of(
             [RankedId(i, 1.0 - 0.02 * n, "topic") for n, i in enumerate(list(ids)[:limit])], self._reader
         )
-        notes = tuple(self._source_notes(ranking, hits))
+        notes = (*self._source_notes(ranking, hits), *self._on_steps(overview))
         if not overview.is_single:
             return draft_of("page", hits, notes, overview.blocks)
         told = "".join(block.text for block in overview.first)

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import SIDES, STRUCT, TYPES
-from kb_build.symbols.flags import is_stand_in, operator_areas, operator_given
-from kb_build.symbols.lines import area_text, fatal_lines, mode_needed, poll_line, version_meant, written
-from kb_build.symbols.records import BARE_DATA, CALLS, PAIRS
+from kb_build.symbols.flags import is_stand_in
+from kb_build.symbols.lines import fatal_lines, mode_needed, poll_line, version_meant, written
+from kb_build.symbols.records import BARE_DATA, PAIRS
 from kb_serve.answer.arguments import argument_lines, arguments, operator_call
 from kb_serve.answer.asked_values import ASKED_NOTHING
 from kb_serve.answer.budget import AnswerBlock
+from kb_serve.answer.calls_in_areas import calls_in_areas
 from kb_serve.answer.enum_items import item_lines
 from kb_serve.answer.outcomes import outcomes
 from kb_serve.answer.own_classes import asked_of_classes, definition
@@ -164,7 +165,10 @@ class MarkdownRenderer:
         lines.extend(outcomes(symbol))
         if line := poll_line(symbol):
             lines.append(line)
-        lines.extend(self._calls_in_areas(symbol))
+        lines.extend(
+            f"Its own script calls `{path}`, which takes {area}: where it gets there without, it fails."
+            for path, area in calls_in_areas(symbol, self.reader)
+        )
         for instead in symbol.flagged(BARE_DATA):
             lines.append(_BARE_DATA + (f" Use `{instead}`." if instead else ""))
         told = [*panel_lines(symbol, self.reader)] or [*switch_lines(symbol, self.reader)]
@@ -178,14 +182,6 @@ class MarkdownRenderer:
             lines.append(f"**Deprecated**{since}{removal}: {symbol.deprecation.note}")
         lines.extend(place_lines(symbol, self.reader))
         return "\n\n".join(lines)
-
-    def _calls_in_areas(self, symbol: Symbol) -> Iterator[str]:
-        """The operators that an operator calls in an area, where it can itself begin without one."""
-        for path in symbol.flagged(CALLS) if not operator_areas(symbol) else ():
-            called = self.reader.symbol(path)
-            if called and operator_areas(called) and not operator_given(called):
-                area = area_text(operator_areas(called))
-                yield f"Its own script calls `{path}`, which takes {area}: where it gets there without, it fails."
 
     @staticmethod
     def _call(symbol: Symbol) -> str:

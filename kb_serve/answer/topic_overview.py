@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 _EDITOR = f"{TYPES}Space"
 _MOST_SETTINGS = 10
 _LATEST_MAKER = 5  # among the first steps
+STEPS = "how it is done"  # the name of the block that has them
 _HOW = "**How it is done**"
 _DONE = ("set on `", "` → `", "` makes `", "`obj.")  # in steps that make, set or call something
 _OVERVIEW_TOKENS = 1_200
@@ -98,7 +99,7 @@ class Topics:
         """The steps, or else where the topic is a value; and what is set on the page without being told in them."""
         steps = Steps(self._reader, names).told()
         if steps:
-            yield AnswerBlock("\n".join((_HOW, *numbered(steps))), "how it is done")
+            yield AnswerBlock("\n".join((_HOW, *numbered(steps))), STEPS)
         elif values := [*self._settings.as_value(plain_title(page), page.slug)]:
             yield AnswerBlock("\n".join((_HOW, *(f"- {value}" for value in values))), "as a value")
         if not any(said in step for step in steps for said in _DONE):

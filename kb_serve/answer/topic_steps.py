@@ -230,7 +230,7 @@ class Steps:
         groups = [
             group
             for rank, group in enumerate(self._groups())
-            if self._is_main(group) and not (rank and self._is_in_area(group))
+            if self._is_main(group) and not (rank and (self._is_in_area(group) or self._is_by_hand(group)))
         ][:_MAKERS]
         # What an operator makes that needs nothing comes first: a world, before what is in it makes one; nodes come
         # before their items, which they are told with.
@@ -251,6 +251,14 @@ class Steps:
         maker = self._reader.symbol(creation.maker) if creation.call.startswith(OPERATORS) else None
         return maker is not None and bool(operator_areas(maker))
 
+    def _is_by_hand(self, creations: Mapping[str, Creation]) -> bool:
+        """Whether an operator makes something beside what the file's own function makes: a second slot for a material
+        that assigning it has given one.
+        """
+        first = self._creations.get(self._classes[0])
+        is_by_data = first is not None and first.call.startswith("bpy.data.")
+        return is_by_data and all(one.call.startswith(OPERATORS) for one in creations.values())
+
     def _is_main(self, creations: Mapping[str, Creation]) -> bool:
         """Whether the topic is about what one maker makes: the kinds of its main class, too."""
         first = next(iter(creations))
@@ -260,8 +268,10 @@ class Steps:
     def _groups(self) -> list[dict[str, Creation]]:
         """The classes that are made, by what makes them, each group with its heaviest class first."""
         groups: dict[str, dict[str, Creation]] = defaultdict(dict)
-        # A modifier with the topic's name makes the settings that it holds.
-        for path in sorted(self._classes, key=lambda path: not self._has_modifier(path)):
+        # A modifier with the topic's name makes the settings that it holds; kinds of what is called so come next.
+        for path in sorted(
+            self._classes, key=lambda path: (not self._has_modifier(path), not self._is_of_kind(path))
+        ):
             creation = self._creations.get(path)
             is_left = path in _NOT_MADE or self._is_of_made_data(path)
             if creation and not is_left and not is_of_interface(creation.call):
@@ -269,6 +279,14 @@ class Steps:
         # The first group is the heaviest class's; of the others, many light classes outweigh a single one.
         first, others = [*groups.values()][:1], [*groups.values()][1:]
         return [*first, *sorted(others, key=self._names.weight_of, reverse=True)]
+
+    def _is_of_kind(self, path: str) -> bool:
+        """Whether a class is a kind of what is called as the topic: a constraint, and not the target of one. Nodes come
+        after their tree.
+        """
+        return not self._reader.descends(path, NODE) and any(
+            self._names.is_called(base.path) for base in self._reader.lineage(path)
+        )
 
     def _is_of_made_data(self, path: str) -> bool:
         """Whether a class is the modifier of data that is made: it is told with that, as it is on another object."""
@@ -288,10 +306,13 @@ class Steps:
             return
         if creation.call.startswith("bpy.data."):
             yield from self._places.of(main)
-        if is_first or self._names.names(main):
-            yield from self._settings.of(main, creation)
+        has_settings = is_first or self._names.names(main)
+        if has_settings:
+            yield from self._settings.own(main, creation)
         if is_first:
             yield from self._nodes.in_own_tree(main)
+        if has_settings:
+            yield from self._settings.further(main, creation)
 
     def _needs_nothing(self, creation: Creation) -> bool:
         """Whether an operator makes a thing wherever it is called."""

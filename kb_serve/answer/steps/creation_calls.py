@@ -9,6 +9,7 @@ from kb_build.symbols.api_names import OPERATORS, TYPES
 from kb_serve.answer.calls_before import calls_before
 from kb_serve.answer.steps.made_line import made_line
 from kb_serve.answer.steps.operators import before
+from kb_serve.answer.steps.variable_names import OBJ
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -55,6 +56,8 @@ class CreationCalls:
             for written in (ready.expression, re.sub(r"^mesh\.", mesh, ready.expression)):
                 self._scene.pointers.note(written)
         on = ready.expression.partition(".")[0]
+        if re.match(rf"{OBJ}\.\w+\.new\(", ready.expression):
+            self._scene.obj.hold(main)
         choices = [
             other.choice
             for cls, other in list(creations.items())[1:]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import ID, TYPES
@@ -11,7 +12,10 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
 
 _MOST_SETTINGS = 10
+_MOST_INPUTS = 8
 _NONE = " = None"
+_INPUT = re.compile(r'`(inputs\[".+?"\])` · .*?( = .*)')
+_ENDS = re.compile("[12]$")
 _PLAIN = ("name", "index")  # every thing has them
 
 
@@ -27,6 +31,15 @@ def settings_of(cls: str, reader: BaseReader) -> str:
         if part := parts.get(entry.name):
             told.append(f"`{part.name}` (after `{entry.name}`){_NONE} ({part.target})")
     return ", ".join(told)
+
+
+def inputs_of(node: str, reader: BaseReader) -> str:
+    """The heaviest inputs of a class of nodes that its name alone reaches, each with its default; empty for none."""
+    known = {
+        entry: match for entry in reader.members(node).values() if (match := _INPUT.fullmatch(entry.head))
+    }
+    heaviest = reader.heaviest(known)[:_MOST_INPUTS]
+    return ", ".join(f"`{known[entry][1]}.default_value`{known[entry][2]}" for entry in heaviest)
 
 
 def are_settings_seen(cls: str, reader: BaseReader) -> bool:
@@ -53,7 +66,14 @@ def _heaviest_settings(cls: str, reader: BaseReader) -> tuple[list[SymbolEntry],
     # What only stores which part it is counts for nothing beside that.
     stored = tuple(f"{part.name}_" for part in parts.values())
     entries = [entry for entry in entries if not (stored and entry.name.startswith(stored))]
-    return reader.heaviest(entries)[:_MOST_SETTINGS], parts
+    heaviest = reader.heaviest(entries)
+    # What a thing is between comes first, without which it does nothing: ``object1`` and ``object2``.
+    ends = sorted(
+        (entry for entry in heaviest if entry.type == "pointer" and _ENDS.search(entry.name)),
+        key=lambda entry: entry.name,
+    )
+    first = [*ends, *heaviest] if len(ends) > 1 else heaviest
+    return [*dict.fromkeys(first)][:_MOST_SETTINGS], parts
 
 
 def part_given_with(pointer: SymbolEntry, reader: BaseReader) -> SymbolEntry | None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.records import PAIRS
 from kb_serve.answer.render import is_machinery
-from kb_serve.answer.steps.members import call_of
+from kb_serve.answer.steps.members import call_of, inputs_of
 from kb_serve.answer.steps.node_items import NodeItems
 from kb_serve.answer.steps.node_links import NodeLinks
 from kb_serve.answer.steps.pointer_fills import stays_empty
@@ -77,10 +77,30 @@ class NodeSteps:
                 return
             yield from self._scene.pointers.steps(symbol, variable)
             yield f"`tree = {variable}.{pointer.name}`"
-        if is_given or holder in _WITH_OUTPUT:
+        main, *others = creations
+        if place := self._place(main, pointer) if holder in _WITH_OUTPUT else "":
+            yield from self._there(main, place)
+            if others:
+                yield from self._calls.making({node: creations[node] for node in others})
+        elif is_given or holder in _WITH_OUTPUT:
             yield from self._joined(creations, tree)
         else:
             yield from self._calls.making(creations)
+
+    def _place(self, node: str, pointer: SymbolEntry) -> str:
+        """Where a new tree that a pointer leads to has a node: ``nodes["Background"]``; empty where it has none."""
+        symbol = self._reader.symbol(node)
+        way, _, place = symbol.reached.partition(f".{pointer.name}.nodes[") if symbol else ("", "", "")
+        return f"nodes[{place}" if way and place else ""
+
+    def _there(self, node: str, place: str) -> Iterator[str]:
+        """A node that new trees have, and its main inputs."""
+        variable = self._scene.variables.of(node)
+        self._scene.variables.add(node, variable)
+        self._scene.shown.add(node)
+        yield f"`{variable} = tree.{place}` → `{node.removeprefix(TYPES)}`, which a new one has"
+        if inputs := inputs_of(node, self._reader):
+            yield f"set on `{variable}`: {inputs}"
 
     def _joined(self, creations: Mapping[str, Creation], tree: str) -> Iterator[str]:
         """How nodes are made, and the first of them joined to what is before and behind it in the tree."""

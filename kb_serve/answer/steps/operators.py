@@ -10,6 +10,7 @@ from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.flags import operator_active, operator_areas, refused_nothing
 from kb_build.symbols.lines import held, literal, operator_needs
 from kb_serve.answer.arguments import of_file_browser
+from kb_serve.answer.calls_in_areas import calls_in_areas
 from kb_serve.answer.panel_lines import panel_lines, switches_off
 
 if TYPE_CHECKING:
@@ -83,16 +84,15 @@ def runs(names: TopicNames, scene: NewScene, *, is_cached: bool, is_made: bool) 
     ]
     if is_cached:
         operators = [*_bakes(reader), *operators]
-    modifiers = _of_modifiers(names, scene)
-    operators = [*modifiers, *(path for path in operators if path not in modifiers)]
-    told = operators[:_MOST]
-    for path in [path for path in told if not _only_shows(path)] or told:
-        if symbol := reader.symbol(path):
-            yield from before(symbol, scene)
-            step, argument = _WORKS_WITH.get(path, ("", modifiers.get(path, "")))
-            if step:
-                yield step
-            yield _line(symbol, reader, argument)
+    first = _of_modifiers(names, scene)
+    found = (reader.symbol(path) for path in dict.fromkeys([*first, *operators]))
+    told = [symbol for symbol in found if symbol and _has_its_part(symbol, names, scene)][:_MOST]
+    for symbol in [symbol for symbol in told if not _only_shows(symbol.path)] or told:
+        yield from before(symbol, scene)
+        step, argument = _WORKS_WITH.get(symbol.path, ("", _part_named(symbol, scene)))
+        if step:
+            yield step
+        yield _line(symbol, reader, argument)
 
 
 def _modules_of_others(operators: Mapping[str, Symbol], scene: NewScene) -> set[str]:
@@ -106,24 +106,63 @@ def _modules_of_others(operators: Mapping[str, Symbol], scene: NewScene) -> set[
     return {module for module, all_ in refuses.items() if all_ == {True}}
 
 
-def _of_modifiers(names: TopicNames, scene: NewScene) -> dict[str, str]:
-    """The heaviest operators that run a modifier of the topic, each with the argument that names it: one that binds a
-    mesh to a cage, without which nothing is changed.
+def _of_modifiers(names: TopicNames, scene: NewScene) -> list[str]:
+    """The heaviest operators that run a modifier of the topic: one that binds a mesh to a cage, without which nothing
+    is changed.
     """
-    reader, found = scene.reader, dict[str, str]()
+    reader, found = scene.reader, list[str]()
     for cls in names.classes:
-        stem = key(cls.removeprefix(TYPES).removesuffix("Modifier"))
         if cls not in scene.shown or not cls.endswith("Modifier"):
             continue
         paths = [
             path
             for path in reader.operators_taking(_MODIFIER)
-            if path.split(".")[3].split("_")[0] == stem and _runs(path)
+            if _first_word(path) == _kind_of(cls, reader) and _runs(path)
         ]
         entries = [entry for path in paths if (entry := reader.entry(path))]
-        argument = f"{_MODIFIER}={scene.variables.of(cls)}.name"
-        found |= {entry.path: argument for entry in reader.heaviest(entries)[:_MOST_OF_MODIFIERS]}
+        found += [entry.path for entry in reader.heaviest(entries)[:_MOST_OF_MODIFIERS]]
     return found
+
+
+def _has_its_part(operator: Symbol, names: TopicNames, scene: NewScene) -> bool:
+    """Whether the steps have made what an operator works on: a constraint of its kind, on the object as it is now."""
+    parameters = {parameter.name for parameter in operator.parameters}
+    kinds = {
+        _kind_of(cls, scene.reader): cls
+        for cls in names.classes
+        if _base_key(cls, scene.reader) in parameters
+    }
+    cls = kinds.get(_first_word(operator.path))
+    if cls is not None:
+        return cls in scene.obj.parts
+    made = {_base_key(cls, scene.reader) for cls in scene.shown}
+    return parameters.isdisjoint(made) or bool(_part_named(operator, scene))
+
+
+def _part_named(operator: Symbol, scene: NewScene) -> str:
+    """The argument that names what an operator works on, where steps have made it on the object; empty for none."""
+    parameters = {parameter.name for parameter in operator.parameters}
+    for cls in reversed(scene.obj.parts):
+        if (name := _base_key(cls, scene.reader)) in parameters:
+            return f"{name}={scene.variables.of(cls)}.name"
+    return ""
+
+
+def _base_key(cls: str, reader: BaseReader) -> str:
+    """What operators call the part of an object that a class is a kind of: ``modifier``; empty for another class."""
+    name = cls.removeprefix(TYPES)
+    bases = (base.name for base in reader.lineage(cls) if base.name != name)
+    return next((key(base) for base in bases if name.endswith(base)), "")
+
+
+def _kind_of(cls: str, reader: BaseReader) -> str:
+    """What operators on parts of one kind begin with: ``childof``, ``multires``; empty for another class."""
+    base = _base_key(cls, reader)
+    return key(cls.removeprefix(TYPES))[: -len(base)] if base else ""
+
+
+def _first_word(path: str) -> str:
+    return path.split(".")[3].split("_", maxsplit=1)[0]
 
 
 def before(operator: Symbol, scene: NewScene) -> Iterator[str]:
@@ -194,6 +233,8 @@ def _asked(operator: Symbol, reader: BaseReader) -> Iterator[str]:
         yield f"takes {needs}"
     elif _never_ran(operator):
         yield "not seen to run without a window"
+    for path, area in calls_in_areas(operator, reader):
+        yield f"calls `{path}`, which takes {area}"
     yield from panel_lines(operator, reader)
 
 

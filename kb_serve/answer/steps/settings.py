@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import ID, OPERATORS, TYPES
-from kb_build.symbols.flags import empty_when_new
+from kb_build.symbols.flags import empty_when_new, fillers
 from kb_build.symbols.lines import mode_needed
 from kb_build.symbols.records import EMPTY
 from kb_serve.answer.steps.members import are_settings_seen, call_of, settings_of
@@ -40,19 +40,24 @@ class SettingSteps:
         self._scene = scene
         self._reader = scene.reader
 
-    def of(self, cls: str, creation: Creation) -> Iterator[str]:
-        """A new thing's own settings and functions, then the settings that it points to, and those below, where they
+    def own(self, cls: str, creation: Creation) -> Iterator[str]:
+        """A new thing's own settings."""
+        variable = self._expression(cls, creation)
+        if variable and (own := settings_of(cls, self._reader)):
+            yield f"set on `{variable}`: {own}"
+        # The class that the call makes, where that is one of several below it: a point light for a light.
+        kinds = [one.path for one in self._reader.descendants(cls)] if variable else []
+        for kind, made in self._reader.creations(kinds).items():
+            if made.call == creation.call and (of_kind := settings_of(kind, self._reader)):
+                yield f"set on `{variable}` (`{kind.removeprefix(TYPES)}`): {of_kind}"
+
+    def further(self, cls: str, creation: Creation) -> Iterator[str]:
+        """What a new thing holds, its functions, then the settings that it points to, and those below, where they
         belong to the topic or are its cache.
         """
         variable = self._expression(cls, creation)
         if not variable:
             return
-        if own := settings_of(cls, self._reader):
-            yield f"set on `{variable}`: {own}"
-        # The class that the call makes, where that is one of several below it: a point light for a light.
-        for kind, made in self._reader.creations([one.path for one in self._reader.descendants(cls)]).items():
-            if made.call == creation.call and (of_kind := settings_of(kind, self._reader)):
-                yield f"set on `{variable}` (`{kind.removeprefix(TYPES)}`): {of_kind}"
         entries = self._reader.members(cls).values()
         yield from self._in(cls, variable)
         yield from self._on_elements(cls, variable)
@@ -73,15 +78,25 @@ class SettingSteps:
         return self._reader.heaviest(entries, _LEAST)[:_MEMBERS]
 
     def _in(self, cls: str, variable: str) -> Iterator[str]:
-        """The collections of a thing, and what adds to them; last those that are added to in another mode alone."""
-        by_mode: dict[str, list[str]] = {"": []}
+        """The collections of a thing, and what adds to them; last what is added in another mode alone."""
+        by_mode: dict[str, list[SymbolEntry]] = {"": []}
         for entry in self._collections(cls):
-            by_mode.setdefault(self._mode_of(entry), []).append(self._held(entry, variable))
-        for mode, items in by_mode.items():
-            if mode and (steps := self._scene.obj.to_mode(mode)):
+            by_mode.setdefault(self._mode_of(entry), []).append(entry)
+        if anywhere := by_mode.pop(""):
+            yield f"in `{variable}`: " + ", ".join(self._held(entry, variable) for entry in anywhere)
+        for mode, entries in by_mode.items():
+            if steps := self._scene.obj.to_mode(mode):
                 yield "; ".join(f"`{step}`" for step in steps)
-            if items:
-                yield f"in `{variable}`: " + ", ".join(items)
+            for entry in entries:
+                yield from self._added(entry, variable)
+
+    def _added(self, collection: SymbolEntry, variable: str) -> Iterator[str]:
+        """The step that adds to a collection of a thing, and the settings of what it adds."""
+        element = f"{TYPES}{collection.target}"
+        name = self._scene.variables.of(element)
+        yield f"`{name} = {variable}.{collection.name}.{self._added_by(collection)}` → `{collection.target}`"
+        if settings := settings_of(element, self._reader):
+            yield f"set on `{name}`: {settings}"
 
     def _on_elements(self, cls: str, variable: str) -> Iterator[str]:
         """The settings of the elements that a new thing has, where nothing makes them: a variable's target."""
@@ -208,7 +223,7 @@ class SettingSteps:
         if creation is None or not creation.call.startswith(f"{OBJ}."):
             return "", []
         name = pointer.partition("_")[0]
-        made = f'{OTHER} = bpy.data.objects.new("{name.title()}", bpy.data.meshes.new("{name.title()}"))'
+        made = f'{OTHER} = bpy.data.objects.new("{name.title()}", {OBJ}.data.copy())'
         return name, [
             f"another mesh object: `{made}`; `bpy.context.collection.objects.link({OTHER})`",
             f"`{name} = {creation.call.replace(OBJ, OTHER, 1)}` → `{cls.removeprefix(TYPES)}`",
@@ -223,7 +238,14 @@ class SettingSteps:
         if not entry.is_read_only and not self._reader.descends(target, ID):
             return None
         pointer = self._reader.symbol(entry.path)
-        return None if pointer is None or stays_empty(pointer) else pointer
+        if pointer is None or stays_empty(pointer):
+            return None
+        return pointer if self._names.holds(entry.name) or not _makes_another(pointer) else None
 
     def _belongs(self, cls: str) -> bool:
         return cls not in self._scene.shown and (cls in self._names.classes or cls == POINT_CACHE)
+
+
+def _makes_another(pointer: Symbol) -> bool:
+    """Whether what fills a pointer makes a thing one of another kind: a function of the file that takes it."""
+    return any(call.startswith("bpy.data.") for call in fillers(pointer))

@@ -37,6 +37,10 @@ class TopicNames:
         """Whether a name holds the topic's words."""
         return any(words <= set(terms(name)) for words in self.words)
 
+    def holds(self, name: str) -> bool:
+        """Whether the topic has all words of a name."""
+        return any(words >= set(terms(name)) for words in self.words)
+
     def has_title(self, name: str) -> bool:
         """Whether a name holds all words of the title."""
         return all(words <= set(terms(name)) for words in self.words[:1])

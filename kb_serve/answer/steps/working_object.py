@@ -39,6 +39,16 @@ class WorkingObject:
         self._kind = _MESH
         self._is_active = True
         self._mode = _OBJECT_MODE
+        self._parts: list[str] = []
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The classes of what was made on it, such as modifiers, the first first."""
+        return tuple(self._parts)
+
+    def hold(self, cls: str) -> None:
+        """Notes that an instance of a class was made on it."""
+        self._parts.append(cls)
 
     def made_of(self, data: str) -> list[str]:
         """The steps that make an object of new data, given by its class; none for what is no object's data."""
@@ -63,10 +73,10 @@ class WorkingObject:
 
     def restoring(self) -> Callable[[], None]:
         """What makes undone all that happens to it from now on."""
-        before = self._kind, self._is_active, self._mode
+        before = self._kind, self._is_active, self._mode, list(self._parts)
 
         def restore() -> None:
-            self._kind, self._is_active, self._mode = before
+            self._kind, self._is_active, self._mode, self._parts = before
 
         return restore
 
@@ -84,7 +94,8 @@ class WorkingObject:
         kinds = [kind for kind in (_ADDED_TYPE.fullmatch(call) for call in calls) if kind]
         if not kinds:
             return []
-        self._kind, self._is_active, self._mode = kinds[0][1], True, _OBJECT_MODE
+        self._replace(kinds[0][1])
+        self._is_active = True
         return [f"bpy.ops.{calls[0]}", "obj = bpy.context.object"]
 
     def to_mode(self, mode: str) -> list[str]:
@@ -141,4 +152,4 @@ class WorkingObject:
 
     def _replace(self, kind: str) -> None:
         self._variables.add(OBJECT, OBJ)
-        self._kind, self._is_active, self._mode = kind, False, _OBJECT_MODE
+        self._kind, self._is_active, self._mode, self._parts = kind, False, _OBJECT_MODE, []

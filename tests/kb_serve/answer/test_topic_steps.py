@@ -115,7 +115,8 @@ def test_of_many_nodes_one_that_stands_alone_is_the_example(reader: BaseReader) 
 
 def test_a_world_has_a_background_and_no_rigid_bodies(reader: BaseReader) -> None:
     said = "\n".join(steps(reader, "world", "World", "RigidBodyWorld"))
-    assert 'tree.nodes.new("ShaderNodeBackground")' in said
+    assert '`background = tree.nodes["Background"]`' in said
+    assert '`inputs["Strength"].default_value` = 1' in said
     assert "Principled" not in said
     assert "rigidbody" not in said
 
@@ -214,7 +215,8 @@ def test_edit_bones_are_added_in_edit_mode(reader: BaseReader) -> None:
     told = steps(reader, "armature", "Armature", "Bone")
     entered = next(place for place, line in enumerate(told) if "mode_set(mode='EDIT')" in line)
     assert "view_layer.objects.active = obj" in told[entered]
-    assert "`.edit_bones`" in told[entered + 1]
+    assert '`bone = object_data.edit_bones.new("Bone")`' in told[entered + 1]
+    assert "set on `bone`: `tail`, `head`" in told[entered + 2]
     assert _done_in_blender(told)
 
 
@@ -292,6 +294,60 @@ def test_a_material_gets_strokes_settings_by_the_call_that_makes_them(reader: Ba
     made = next(place for place, line in enumerate(told) if "create_gpencil_data(material)" in line)
     assert "set on `material.grease_pencil`" in told[made + 1]
     assert _done_in_blender(told)
+
+
+def test_a_material_has_a_shader_whose_inputs_are_set_and_no_strokes(reader: BaseReader) -> None:
+    words = frozenset({"material"})
+    weights = {"Material": 10.0, "MaterialSlot": 9.0, "MaterialLineArt": 8.0, "MaterialGPencilStyle": 2.0}
+    classes = {f"{TYPES}{name}": weight for name, weight in weights.items()}
+    told = _told(reader, TopicNames(words, (words,), classes=classes))
+    there = next(place for place, line in enumerate(told) if '`principled = tree.nodes["Principled' in line)
+    assert '`inputs["Base Color"].default_value` = (0.8, 0.8, 0.8, 1)' in told[there + 1]
+    assert 'tree.nodes.new("ShaderNodeEmission")' in told[there + 2]
+    said = "".join(told)
+    assert "grease_pencil" not in said
+    assert "material_slot_add" not in said
+    assert _done_in_blender(told)
+
+
+def test_a_constraint_between_two_objects_begins_with_these(reader: BaseReader) -> None:
+    told = steps(reader, "rigid body constraint", "RigidBodyConstraint")
+    between = "set on `bpy.context.object.rigid_body_constraint`: `object1` = None (Object), `object2` = None (Object)"
+    assert between in " ".join(told)
+
+
+_APPLY, _INVERSE = "bpy.ops.constraint.apply", "bpy.ops.constraint.childof_set_inverse"
+
+
+@pytest.mark.parametrize(
+    ("classes", "run"),
+    [
+        (("ChildOfConstraint",), [_APPLY, _INVERSE]),
+        (("CopyLocationConstraint", "ChildOfConstraint"), [_APPLY]),
+        (("KinematicConstraint",), []),  # which is on a bone
+    ],
+)
+def test_an_operator_is_given_what_it_works_on(
+    reader: BaseReader, classes: tuple[str, ...], run: list[str]
+) -> None:
+    words = frozenset({"constraint"})
+    weights = {f"{TYPES}{name}": 10.0 - place for place, name in enumerate(classes)}
+    names = TopicNames(words, (words,), classes=weights, operators=dict.fromkeys((_APPLY, _INVERSE), 9.0))
+    told = [line for line in Steps(reader, names).told() if "bpy.ops.constraint." in line]
+    assert [line.partition("(constraint=constraint.name, ")[0].lstrip("`") for line in told] == run
+
+
+def test_a_kind_comes_before_what_belongs_to_one(reader: BaseReader) -> None:
+    told = steps(reader, "constraint", "ConstraintTargetBone", "CopyRotationConstraint", "TrackToConstraint")
+    assert told[0].startswith("1. `constraint = obj.constraints.new('COPY_ROTATION')`")
+
+
+def test_an_area_that_an_operator_needs_on_its_way_is_told(reader: BaseReader) -> None:
+    names = TopicNames(frozenset({"rigidbody"}), (), operators={"bpy.ops.rigidbody.bake_to_keyframes": 9.0})
+    assert (
+        "calls `bpy.ops.anim.keyframe_insert_by_name`, which takes an area of any type"
+        in Steps(reader, names).told()[-1]
+    )
 
 
 def test_a_page_begins_with_what_it_explains(reader: BaseReader) -> None:
