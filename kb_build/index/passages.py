@@ -1,9 +1,9 @@
 """The place in the manual that is about a symbol.
 
-Blender's own table leads every symbol to a page. Where the page carries the symbol's address, and speaks of it
-there, that is the place. Else it is the definition whose term is the symbol's label, within the part of the page that is about the symbol's
-class, not marked as another symbol's, not under another class's heading, and the only one of that name. Where that is
-not sure, a symbol has no place.
+Blender's own table leads every symbol to a page. Where the page carries the symbol's address and speaks of it there,
+that is the place. Else it is the definition whose term is the symbol's label, within the part of the page that is about
+the symbol's class, not marked as another symbol's, not under another class's heading, and the only one of that name.
+Where that is not sure, a symbol has no place.
 """
 
 from __future__ import annotations
