@@ -199,7 +199,7 @@ def test_the_label_of_settings_is_not_the_collections_that_they_are_named_after(
 def test_a_heading_of_an_enumerations_items_is_its_place(items: tuple[str, ...], is_found: bool) -> None:
     kind = replace(
         member(SUN, "tint", "Tint"),
-        enum_items=tuple(EnumItem(item.upper(), item, "", number) for number, item in enumerate(items)),
+        enum_items=tuple(EnumItem(item.upper(), item) for item in items),
     )
     text = "**Warm**\n  As a candle.\n\n**Cold**\n  As snow."
     sections = (LIGHTS[0], Section("tint", "Tint", 2, text, (("bpy-types-sunlight-tint", -1),)))
