@@ -2,8 +2,8 @@
 
 The passage that is about a symbol (:mod:`kb_build.index.passages`) begins with a term or stands below a heading. Of
 the symbols of one such label, those count that are called just so; of a class and its subclasses, the class. Where
-more than two different names are left, or where it is not sure that the label means them, it has none. Operators are
-added that have no passage, or several (:mod:`kb_build.index.operator_labels`).
+more different names are left than two, or than the label lists, or where it is not sure that the label means them, it
+has none. Operators are added that have no passage, or several (:mod:`kb_build.index.operator_labels`).
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ def _of_page(
             names = dict.fromkeys(called.values())
         else:
             names = dict.fromkeys(filter(None, (_name(symbol, subject) for symbol in meant)))
-        if 0 < len(names) <= _MOST:
+        if 0 < len(names) <= max(_MOST, len(_LISTED.split(label))):
             yield LabelName(page.slug, *place, ", ".join(f"`{name}`" for name in names))
 
 

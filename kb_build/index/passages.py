@@ -1,9 +1,9 @@
 """The place in the manual that is about a symbol.
 
-Blender's own table leads every symbol to a page. Where the page carries the symbol's address, that is the place.
-Else it is the definition whose term is the symbol's label, within the part of the page that is about the symbol's
-class, not marked as another symbol's, not under another class's heading, and the only one of that name. Where that is
-not sure, a symbol has no place.
+Blender's own table leads every symbol to a page. Where the page carries the symbol's address and speaks of it there,
+that is the place. Else it is the definition whose term is the symbol's label, within the part of the page that is about
+the symbol's class, not marked as another symbol's, not under another class's heading, and the only one of that name.
+Where that is not sure, a symbol has no place.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ KIND_WORDS = frozenset(terms_of("f-modifier constraint node settings rule textur
 _ADDRESS = re.compile(r"[^a-z0-9]+")
 _PARTS = re.compile(r"\s*(?:/|,| and )\s*")
 _REFERS = re.compile(r"(?:See .{,40})?")  # to what is not there
-_BRACKETS = re.compile(r"\s*[(\[][^)\]]*[)\]]")
+_BRACKETS = re.compile(r"\s*[(\[][^)\]]*[)\]]|,?\s*`[^`]*`")  # and keys to press
 
 
 class Passage(NamedTuple):
@@ -76,9 +76,28 @@ class _Place:
 
 
 def keys_of_term(term: str) -> frozenset[str]:
-    """The keys of a term: ``Size / Size X`` and ``Distance (m)`` are found by each of their names."""
+    """The keys of a term: ``Size / Size X`` and ``Distance (m)`` are found by each of their names, without the
+    keys to press.
+    """
     plain = _BRACKETS.sub("", term)
-    return frozenset(filter(None, (key(plain), key(term), *map(key, _PARTS.split(plain)))))
+    parts = _PARTS.split(plain)
+    return frozenset(filter(None, (key(plain), key(term), *map(key, parts), *map(key, _in_full(parts)))))
+
+
+def _in_full(parts: Sequence[str]) -> Iterator[str]:
+    """The names that a list is short for, in the orders that labels have: "Levels Viewport, Render" for Levels and
+    Render Levels, "Mute/Unmute Strips" for Mute Strips.
+    """
+    first, *others = parts
+    *before, last = parts
+    head, _, own = first.rpartition(" ")
+    if head and others and not any(" " in part for part in others):
+        yield head
+        for part in (own, *others):
+            yield from (f"{head} {part}", f"{part} {head}")
+    _, _, tail = last.partition(" ")
+    if tail and not any(" " in part for part in before):
+        yield from (f"{part} {tail}" for part in before)
 
 
 def _read(page: Page) -> _Place:
@@ -111,6 +130,14 @@ def says_something(page: Page, place: Passage) -> bool:
     return not _REFERS.fullmatch(passage_text(page.sections[place.section].text, place.line))
 
 
+def _tells_of(symbol: Symbol, page: Page, place: Passage) -> bool:
+    """Whether a place says something, or is the heading of an enumeration's items."""
+    if place.line >= 0 or not symbol.enum_items or says_something(page, place):
+        return says_something(page, place)
+    items = {key(item.name) for item in symbol.enum_items}
+    return sum(key(term) in items for _, term in term_lines(page.sections[place.section].text)) > 1
+
+
 class _Finder:
     def __init__(self, symbols: Sequence[Symbol], pages: Sequence[Page], links: Iterable[Link]) -> None:
         self._symbols = {symbol.path: symbol for symbol in symbols}
@@ -119,6 +146,8 @@ class _Finder:
         self._places: dict[str, _Place] = {}
         self._sockets: dict[str, set[str]] = defaultdict(set)
         self._explained: dict[str, list[Symbol]] = defaultdict(list)
+        # What properties like points_u, points_v are named after: a label "Points" means these, not a collection.
+        self._families = {symbol.path.rpartition("_")[0] for symbol in symbols if symbol.kind == "property"}
         for symbol in symbols:
             if symbol.kind == "socket":
                 self._sockets[symbol.owner].add(key(symbol.label))
@@ -133,36 +162,71 @@ class _Finder:
             if slug not in self._pages or symbol.kind not in _KINDS or INVERTED in symbol.flags:
                 continue
             place = self._place(slug)
-            at = self._marked(symbol, place) or self._defined(symbol, place, address)
-            if at and says_something(place.page, found := Passage(slug, *at)):
-                yield symbol.path, found
+            found = (Passage(slug, *at) for at in self._candidates(symbol, place, address))
+            if passage := next((each for each in found if _tells_of(symbol, place.page, each)), None):
+                yield symbol.path, passage
 
     def _place(self, slug: str) -> _Place:
         if slug not in self._places:
             self._places[slug] = _read(self._pages[slug])
         return self._places[slug]
 
-    def _marked(self, symbol: Symbol, place: _Place) -> tuple[int, int] | None:
-        """Where the page carries the symbol's address. Headings also carry those of what is only mentioned below: there
-        half of the label must be found in the heading or the first paragraph.
+    def _candidates(self, symbol: Symbol, place: _Place, address: str) -> Iterator[tuple[int, int]]:
+        """Where the page may speak of the symbol, the surest place first."""
+        if at := place.marks.get(address_of(symbol.path)):
+            if at[1] < 0 and symbol.kind != "class":
+                yield from self._entry_below(symbol, place, at)
+            if self._is_marked(symbol, place, at):
+                yield at
+        if at := self._defined(symbol, place, address):
+            yield at
+
+    def _entry_below(
+        self, symbol: Symbol, place: _Place, heading: tuple[int, int]
+    ) -> Iterator[tuple[int, int]]:
+        """The only term below a heading with the symbol's address that is the symbol's label, as the heading is not."""
+        scope, wanted = scope_of(place.page, heading), key(symbol.label)
+        if key(place.page.sections[heading[0]].title) == wanted:
+            return
+        entries = {
+            (term.section, term.line)
+            for term in place.terms.get(wanted, ())
+            if term.own == wanted and term.section in scope
+        }
+        if len(entries) == 1:
+            yield from entries - place.taken
+
+    def _is_marked(self, symbol: Symbol, place: _Place, at: tuple[int, int]) -> bool:
+        """Whether the place with the symbol's address is about it.
+
+        Headings also carry the addresses of what is only mentioned below: there half of the label must be found in the
+        heading or the first paragraph. A term also carries those of what is set beside it.
         """
-        at = place.marks.get(address_of(symbol.path))
-        if at is None or symbol.kind == "class":
-            return at if at and at[1] < 0 else None
-        if at[1] >= 0:
-            return at
-        section = place.page.sections[at[0]]
-        label = set(_stems(symbol.label))
-        said = _stems(section.title if section.level > 1 else "", passage_text(section.text, -1))
-        return at if len(label.intersection(said)) * 2 >= len(label) else None
+        section, line = place.page.sections[at[0]], at[1]
+        if symbol.kind == "class":
+            return line < 0
+        if line < 0:
+            said = _stems(section.title if section.level > 1 else "", passage_text(section.text, -1))
+            return not symbol.label or _share(symbol.label, said) >= 1 / 2
+        is_alone = sum(mark == at for mark in place.marks.values()) == 1
+        return is_alone or _is_of(
+            symbol, _stems(section.text.split("\n")[line], passage_text(section.text, line))
+        )
 
     def _defined(self, symbol: Symbol, place: _Place, address: str) -> tuple[int, int] | None:
         """Where the page surely defines the symbol's label."""
         if symbol.kind not in {"property", "socket"} or not symbol.label:
             return None
+        if symbol.type == "collection" and symbol.path in self._families:
+            return None
         scope = scope_of(place.page, place.marks.get(address))
         wanted = key(symbol.label)
-        terms = [term for term in place.terms.get(wanted, ()) if self._may_be(symbol, term, place, scope)]
+        terms = [
+            term
+            for term in place.terms.get(wanted, ())
+            if self._may_be(symbol, term, place, scope)
+            and says_something(place.page, Passage(place.page.slug, term.section, term.line))
+        ]
         # A term of its own goes before one that it shares with others, as Target before Target/Owner.
         terms = [term for term in terms if term.own == wanted] or terms
         if len(terms) == 1 and self._is_sure(symbol, terms[0], place, address):
@@ -225,6 +289,22 @@ def _stems_of(text: str) -> tuple[str, ...]:
 
 def _stems(*texts: str) -> list[str]:
     return [word for text in texts for word in _stems_of(text)]
+
+
+def _share(text: str, said: Iterable[str]) -> float:
+    """The share of a text's words that are said."""
+    stems = set(_stems(text))
+    return len(stems.intersection(said)) / len(stems) if stems else 0.0
+
+
+def _is_of(symbol: Symbol, said: Sequence[str]) -> bool:
+    """Whether a term with the addresses of several symbols is about this one: of an operator it says what is done, not
+    only with what; of a property half of the label, or a third of the description.
+    """
+    share = _share(symbol.label, said)
+    if symbol.kind == "operator":
+        return share > 1 / 2
+    return share >= 1 / 2 or _share(symbol.description, said) >= 1 / 3
 
 
 def _about(symbol: Symbol) -> set[str]:

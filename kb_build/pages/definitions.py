@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from itertools import dropwhile, takewhile
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+# Quotes, tables, lists, code, formulas, headings, definitions and what is nested in them, captions.
+_NOT_PROSE = re.compile(r"$|\s|[>|$#]|[-*] |```|\*\*[^\n]*\*\*:?\s*(?:\n|$)|Figure: ")
+_EXAMPLES = re.compile(r"(?:For )?examples?\b", re.IGNORECASE)
 
 
 def term_lines(text: str) -> Iterator[tuple[int, str]]:
@@ -25,12 +30,14 @@ def term_of(line: str) -> str:
 
 
 def passage_text(text: str, line: int) -> str:
-    """What stands at a line of a section's Markdown: a term's definition, or a paragraph; at -1 its first paragraph."""
+    """What stands at a line of a section's Markdown: a term's definition, or a paragraph; at -1 its first paragraph,
+    with the list that it announces or the examples of it.
+    """
     lines = text.split("\n")
     if line < 0:
-        blocks = list(dropwhile(lambda block: not _is_prose(block), text.split("\n\n")))
-        announces = blocks and blocks[0].endswith(":")
-        return "\n\n".join(blocks[: 2 if announces else 1])
+        blocks = list(dropwhile(_NOT_PROSE.match, text.split("\n\n")))
+        announcing = next((n for n, block in enumerate(blocks[:2]) if _announces(block, n)), -1)
+        return "\n\n".join(blocks[: announcing + 2])
     if line >= len(lines):
         return ""
     if lines[line].startswith(">"):
@@ -47,10 +54,8 @@ def passage_text(text: str, line: int) -> str:
     return textwrap.dedent("\n".join(below)).strip()
 
 
-def _is_prose(paragraph: str) -> bool:
-    return paragraph[:1] not in {"", ">", "|", "-", "*", "`", "$", "#"} and not paragraph.startswith(
-        "Figure: "
-    )
+def _announces(block: str, place: int) -> bool:
+    return block.endswith(":") and (place == 0 or _EXAMPLES.match(block) is not None)
 
 
 def _depth(line: str) -> int:

@@ -70,7 +70,8 @@ class Topics:
         page = self._reader.page_entry(slug)
         assert page is not None
         names = self._members.names(slug, page.title)
-        head = "\n\n".join(filter(None, (f"## {page.title}", self._said(page), page.url)))
+        telling = self._introduction(page) or page
+        head = "\n\n".join(filter(None, (f"## {page.title}", said_of(telling, self._reader), telling.url)))
         classes, operators = self._entries(names.classes), self._entries(names.operators)
         is_single = not self._reader.page_children(slug)
         settings = self._settings.labelled(slug) if is_single else []
@@ -143,14 +144,13 @@ class Topics:
         names = self._members.names(slug, page.title)
         return frozenset({*names.classes, *names.operators})
 
-    def _said(self, page: PageEntry) -> str:
-        """What the page is about; of a page that only lists others, what its introduction says."""
+    def _introduction(self, page: PageEntry) -> PageEntry | None:
+        """The page that says what a page is about which only lists others, if one does."""
         below = self._reader.page_children(page.slug)
         record = self._reader.page(page.slug)
         is_hollow = record is None or not any(section.text for section in record.sections)
-        if is_hollow and below and below[0].title == "Introduction":
-            return own_summary(below[0]) or said_of(page, self._reader)
-        return said_of(page, self._reader)
+        is_told = is_hollow and below and below[0].title == "Introduction" and own_summary(below[0])
+        return below[0] if is_told else None
 
     def _entries(self, paths: Sequence[str] | dict[str, float]) -> list[SymbolEntry]:
         return [entry for path in paths if (entry := self._reader.entry(path))]

@@ -21,6 +21,7 @@ from kb_build.pages.readers.html_elements import (
     classes_of,
     definition_groups,
     holds_heading,
+    is_icon,
     number,
     plain_text,
     slug_of,
@@ -307,11 +308,11 @@ class ArticleReader:
 
     def _span(self, node: Tag) -> str:
         self._ahead += [attribute(node, "id")] if not node.contents else []
+        if is_icon(node):
+            return md.ICON
         for name in classes_of(node):
             if name == "math":
                 return md.formula(node.get_text().removeprefix(r"\(").removesuffix(r"\)"))
-            if name.startswith("bl-icon"):
-                return md.ICON
             if name == "colon":
                 return ""
             if name == "classifier":

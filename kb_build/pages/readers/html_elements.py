@@ -10,6 +10,8 @@ from urllib.parse import unquote
 from bs4 import Tag
 from bs4.element import PreformattedString
 
+from kb_build.pages.readers.markdown import ICON
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -31,6 +33,11 @@ def classes_of(node: Tag) -> list[str]:
     return list(value) if isinstance(value, list) else (value or "").split()
 
 
+def is_icon(node: Tag) -> bool:
+    """Whether an element shows one of Blender's icons."""
+    return any(name.startswith("bl-icon") for name in classes_of(node))
+
+
 def attribute(node: Tag, name: str) -> str:
     """An attribute's text; empty when there is none."""
     value = node.get(name)
@@ -49,11 +56,13 @@ def children_named(node: Tag, *names: str) -> list[Tag]:
 
 
 def plain_text(node: Tag) -> str:
-    """The text of a title, without the mark that links to it."""
+    """The text of a title, without the mark that links to it; icons stand in it as ``ICON``."""
     parts: list[str] = []
     for child in node.children:
         if not isinstance(child, Tag):
             parts.append("" if isinstance(child, PreformattedString) else str(child))
+        elif is_icon(child):
+            parts.append(ICON)
         elif "headerlink" not in classes_of(child):
             parts.append(plain_text(child))
     return "".join(parts)

@@ -29,13 +29,14 @@ _STRAIGHT = str.maketrans(
 _LANGUAGES = {"default": "", "none": "", "text": "", "python3": "python", "py": "python"}
 _BACKTICKS = re.compile("`+")
 _LIST_MARKER = re.compile(r"(?:- |\d+\. )")
-# Stands for an icon until the line is folded: brackets that held nothing else go with it.
+# Stands for an icon until the line is folded: brackets that held nothing else go with it, and the dash after it where a
+# line begins.
 ICON = "\ufffc"
 # Surrounds an address within a text under way, at the end of the line that it leads to.
 _MARK = "\ue000"
 _SYMBOL = re.compile(r"bpy-[a-z0-9-]{1,200}")
 _MARKED = re.compile(f"{_MARK}({_SYMBOL.pattern}){_MARK}")
-_HOLLOW = re.compile(rf"\s*\(\s*{ICON}\s*\)|{ICON}")
+_HOLLOW = re.compile(rf"\s*\(\s*{ICON}\s*\)|^\s*{ICON}\s*-+\s|{ICON}")
 
 
 def straight(text: str) -> str:

@@ -1,4 +1,4 @@
-"""Which Python names stand beside a label of the manual: only what it surely means, at most two."""
+"""Which Python names stand beside a label of the manual: what it surely means, at most two or as many as it lists."""
 
 from __future__ import annotations
 
@@ -64,6 +64,12 @@ def test_of_a_family_the_base_class_is_named() -> None:
 )
 def test_of_more_than_two_names_there_is_none(owners: tuple[Symbol, ...], expected: str) -> None:
     assert name("Angle", *(member(cls, "angle", "Angle") for cls in owners)) == expected
+
+
+def test_a_label_that_lists_more_has_the_names_of_all() -> None:
+    limits = [member(SUN, f"limit_{axis}", f"Limit {axis.upper()}") for axis in "xyz"]
+    expected = "`SunLight.limit_x`, `SunLight.limit_y`, `SunLight.limit_z`"
+    assert name("Limit X, Y, Z", *limits) == expected
 
 
 def test_what_is_called_just_so_goes_before_what_stands_there_too() -> None:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.index.passages import address_of, find_passages
+from kb_build.index.passages import address_of, find_passages, keys_of_term
 from kb_build.pages.definitions import passage_text, term_lines
-from kb_build.symbols.records import INVERTED, Link, Page, Section, Symbol
+from kb_build.symbols.records import INVERTED, EnumItem, Link, Page, Section, Symbol
 
 if TYPE_CHECKING:
     from kb_build.index.passages import Passage
@@ -135,7 +135,89 @@ def test_a_heading_with_an_operators_address_must_speak_of_it(label: str, is_fou
 
 def test_a_place_that_only_refers_elsewhere_is_none() -> None:
     sections = (LIGHTS[0], Section("more", "Options", 2, "**Angle**\n  See Spot."))
-    assert passage(member(SUN, "angle", "Angle"), sections=sections) is None
+    angle = member(SUN, "angle", "Angle")
+    assert passage(angle, sections=sections) is None
+    assert (
+        text_at(passage(angle, sections=(*sections, LIGHTS[2])), (*sections, LIGHTS[2]))
+        == "How large the sun looks."
+    )
+
+
+SHARED = "**Strength**\n  How random the strength of a light is.\n\n**Use Pressure**\n  Makes it vary as one presses."
+MARKS = tuple(
+    (address_of(path), 0)
+    for path in (
+        "bpy.types.SunLight.strength",
+        "bpy.types.SunLight.use_pressure",
+        "bpy.ops.light.unset_strength",
+    )
+)
+
+
+@pytest.mark.parametrize(
+    ("symbol", "said"),
+    [
+        (member(SUN, "strength", "Light Strength"), "How random the strength of a light is."),
+        (member(SUN, "use_pressure", "Use Pressure", "Press the pen to vary it"), "Makes it vary as one presses."),
+        (member(SUN, "use_pressure", "Amount", "Random light strength"), "How random the strength of a light is."),
+        (Symbol("bpy.ops.light.unset_strength", "operator", "bpy.ops.light", label="Unset Strength"), ""),
+    ],
+)  # fmt: skip
+def test_a_term_with_several_addresses_must_speak_of_the_symbol(symbol: Symbol, said: str) -> None:
+    sections = (LIGHTS[0], Section("random", "Randomize", 2, SHARED, MARKS))
+    assert text_at(passage(symbol, sections=sections), sections) == said
+
+
+@pytest.mark.parametrize(
+    ("heading", "said"), [("Adding", "Puts one there."), ("Add Light", "Lights are added here.")]
+)
+def test_an_entry_below_the_heading_with_the_address_goes_before_it(heading: str, said: str) -> None:
+    operator = Symbol("bpy.ops.light.add", "operator", "bpy.ops.light", label="Add Light")
+    text = "Lights are added here.\n\n**Add Light `A`**\n  Puts one there."
+    sections = (LIGHTS[0], Section("add", heading, 2, text, (("bpy-ops-light-add", -1),)))
+    assert text_at(passage(operator, sections=sections), sections) == said
+
+
+def test_where_the_address_leads_to_nothing_the_definition_counts() -> None:
+    text = "**Common Options**\n\n**Angle**\n  How wide."
+    sections = (LIGHTS[0], Section("more", "Options", 2, text, (("bpy-types-sunlight-angle", 0),)))
+    assert text_at(passage(member(SUN, "angle", "Angle"), sections=sections), sections) == "How wide."
+
+
+@pytest.mark.parametrize(("others", "is_found"), [((), True), (("spots_u",), False)])
+def test_the_label_of_settings_is_not_the_collections_that_they_are_named_after(
+    others: tuple[str, ...], is_found: bool
+) -> None:
+    spots = replace(member(SUN, "spots", "Spots", "All spots"), type="collection")
+    more = [member(SUN, name, "U") for name in others]
+    sections = (LIGHTS[0], Section("more", "Options", 2, "**Spots**\n  How many.\n\n  U, V"))
+    found = passage(spots, *more, sections=sections, address=address_of(SUN.path))
+    assert (found is not None) is is_found
+
+
+@pytest.mark.parametrize(("items", "is_found"), [(("Warm", "Cold"), True), (("Warm", "Red"), False)])
+def test_a_heading_of_an_enumerations_items_is_its_place(items: tuple[str, ...], is_found: bool) -> None:
+    kind = replace(
+        member(SUN, "tint", "Tint"),
+        enum_items=tuple(EnumItem(item.upper(), item) for item in items),
+    )
+    text = "**Warm**\n  As a candle.\n\n**Cold**\n  As snow."
+    sections = (LIGHTS[0], Section("tint", "Tint", 2, text, (("bpy-types-sunlight-tint", -1),)))
+    assert (passage(kind, sections=sections) is not None) is is_found
+
+
+@pytest.mark.parametrize(
+    ("term", "names"),
+    [
+        ("Levels Viewport, Render", {"levels", "levelsviewport", "renderlevels"}),
+        ("Mute/Unmute Strips `H`, `Alt-H`", {"mutestrips", "unmutestrips"}),
+        ("Start Handle, End Handle", {"starthandle", "endhandle"}),
+        ("Distance (m)", {"distance"}),
+    ],
+)
+def test_a_term_is_found_by_each_of_its_names(term: str, names: set[str]) -> None:
+    assert names <= keys_of_term(term)
+    assert keys_of_term("Start Handle, End Handle").isdisjoint({"start", "handle"})
 
 
 TEXT = "Lead:\n\n- a\n- b\n\n**One**\n**Two**\n  Of both.\n\n  **In**\n    Deep.\n\n**Last**\n\n> **Tip**\n>   Quoted."
@@ -156,6 +238,20 @@ TEXT = "Lead:\n\n- a\n- b\n\n**One**\n**Two**\n  Of both.\n\n  **In**\n    Deep.
 )
 def test_the_text_of_a_place_ends_where_its_indent_does(line: int, said: str) -> None:
     assert passage_text(TEXT, line).strip() == said
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("Negates.\n\nExamples:\n\n- 1 to 0\n- 0 to 1\n\nMore.", "Negates.\n\nExamples:\n\n- 1 to 0\n- 0 to 1"),
+        ("Negates.\n\nThere are two:\n\n- 1\n- 2", "Negates."),
+        ("> **Menu:** Add\n\n*Trim* cuts it.\n\nMore.", "*Trim* cuts it."),
+        ("`L` selects it.", "`L` selects it."),
+        ("**One**\n  Of it.\n\n  In object mode, too.", ""),
+    ],
+)  # fmt: skip
+def test_a_heading_stands_for_its_first_paragraph_with_the_examples_of_it(text: str, said: str) -> None:
+    assert passage_text(text, -1) == said
 
 
 def test_terms_are_lines_in_bold() -> None:

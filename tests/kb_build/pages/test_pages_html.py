@@ -134,6 +134,11 @@ def test_icons_leave_neither_marks_nor_empty_brackets(tmp_path: Path) -> None:
     assert page.sections[0].text == "Press or ."
 
 
+def test_an_icon_before_a_heading_takes_its_dash_along(tmp_path: Path) -> None:
+    page = read_article(tmp_path, '<h1>A - B</h1><h2><span class="bl-icons-x"></span> -- Solid</h2>')
+    assert [section.title for section in page.sections] == ["A - B", "Solid"]
+
+
 def test_file_names_are_not_captions(tmp_path: Path) -> None:
     page = read_article(
         tmp_path, '<p><img alt="_images/a.png" src="x"/></p><p><img alt="A cube" src="y"/></p>'

@@ -50,6 +50,12 @@ def test_an_overview_tells_the_page_its_classes_operators_and_pages_below(kb: Kn
         assert part in answer.text
 
 
+def test_the_address_is_that_of_the_page_whose_words_are_told(kb: KnowledgeBase) -> None:
+    text = kb.query("cloth", max_tokens=3_000).text
+    assert "/physics/cloth/introduction.html" in text
+    assert "/physics/cloth/index.html" not in text
+
+
 @pytest.mark.parametrize(
     ("query", "steps"),
     [
