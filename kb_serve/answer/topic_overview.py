@@ -76,6 +76,7 @@ class Topics:
         steps = [*self._how(page, names, settings)]
         blocks = [AnswerBlock(head, "summary"), *steps]
         lists = (
+            ("See also", [*self._sent_to(slug)]),
             ("Classes", [_line(entry) for entry in classes]),
             ("Operators", [_line(entry) for entry in operators]),
             ("Pages", [*self._page_lines(slug)]),
@@ -154,12 +155,26 @@ class Topics:
     def _entries(self, paths: Sequence[str] | dict[str, float]) -> list[SymbolEntry]:
         return [entry for path in paths if (entry := self._reader.entry(path))]
 
+    def _sent_to(self, slug: str) -> Iterator[str]:
+        """The pages of other chapters that a chapter's first page names and links to, as that on what replaces it."""
+        page = self._reader.page(slug)
+        if page is None or not page.children or len(page.sections) > 1:
+            return
+        text = " ".join(section.text for section in page.sections)
+        for link in page.links:
+            other = None if link.startswith(slug.removesuffix("index")) else self._reader.page_entry(link)
+            if other is not None and other.title in text:
+                yield self._page_line(other)
+
     def _page_lines(self, slug: str, depth: int = 2) -> Iterator[str]:
         for child in self._reader.page_children(slug):
-            said = first_sentence(said_of(child, self._reader))
-            yield clip(f"`{child.slug}` ({child.title}) {said}", _LINE_TOKENS)
+            yield self._page_line(child)
             if depth > 1:
                 yield from (f"  {line}" for line in self._page_lines(child.slug, depth - 1))
+
+    def _page_line(self, page: PageEntry) -> str:
+        said = first_sentence(said_of(page, self._reader))
+        return clip(f"`{page.slug}` ({page.title}) {said}", _LINE_TOKENS)
 
 
 def _line(entry: SymbolEntry) -> str:
