@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.pages.definitions import passage_text
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.lines import first_sentence
 from kb_serve.answer.budget import AnswerBlock, clip, tokens
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 _EDITOR = f"{TYPES}Space"
 _MOST_SETTINGS = 10
 _LATEST_MAKER = 5  # among the first steps
+_SET_UP = "Setup"  # title of a page's section
 _HOW = "**How it is done**"
 _DONE = ("set on `", "` → `", "` makes `", "`obj.")  # in steps that make, set or call something
 _OVERVIEW_TOKENS = 1_200
@@ -74,7 +76,7 @@ class Topics:
         is_single = not self._reader.page_children(slug)
         settings = self._settings.labelled(slug) if is_single else []
         steps = [*self._how(page, names, settings)]
-        blocks = [AnswerBlock(head, "summary"), *steps]
+        blocks = [AnswerBlock(head, "summary"), *self._set_up(slug), *steps]
         lists = (
             ("See also", [*self._sent_to(slug)]),
             ("Classes", [_line(entry) for entry in classes]),
@@ -109,6 +111,13 @@ class Topics:
         told = "".join(steps)
         left = [entry for entry in settings if f"`{entry.name}`" not in told]
         yield from _list_of("Settings", [*self._settings.lines(left[:_MOST_SETTINGS])])
+
+    def _set_up(self, slug: str) -> Iterator[AnswerBlock]:
+        """What a page says must be there before: an image node that is baked to."""
+        page = self._reader.page(slug)
+        for section in page.sections if page else ():
+            if section.title == _SET_UP and (said := passage_text(section.text, -1)):
+                yield AnswerBlock(f"**{_SET_UP}** (from the manual)\n{said}", "setup")
 
     def _of_chapter(self, slug: str) -> list[SymbolEntry]:
         """The heaviest settings that the pages of a chapter name beside their labels."""

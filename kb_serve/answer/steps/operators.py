@@ -43,6 +43,7 @@ UNDO = frozenset(
         "unpack",
     }
 )  # fmt: skip
+_MARK = "mark"  # what others then go by, as seams
 _SHOW = frozenset({"play", "show"})  # what has been done
 _MAKE_OR_REMOVE = UNDO | frozenset(
     {
@@ -85,7 +86,7 @@ def runs(names: TopicNames, scene: NewScene, *, is_cached: bool, is_made: bool) 
         operators = [*_bakes(reader), *operators]
     modifiers = _of_modifiers(names, scene)
     operators = [*modifiers, *(path for path in operators if path not in modifiers)]
-    told = operators[:_MOST]
+    told = sorted(operators[:_MOST], key=lambda path: _MARK not in path.rpartition(".")[2].split("_"))
     for path in [path for path in told if not _only_shows(path)] or told:
         if symbol := reader.symbol(path):
             yield from before(symbol, scene)

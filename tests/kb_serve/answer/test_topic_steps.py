@@ -429,3 +429,13 @@ def test_what_works_on_what_is_selected_comes_after_that(
     told = " ".join(Steps(reader, names).told())
     assert f"bpy.ops.{name}(" in told
     assert ("bpy.ops.mesh.select_all(action='SELECT')" in told) is selects
+
+
+def test_what_others_go_by_is_marked_first(reader: BaseReader) -> None:
+    operators = {"bpy.ops.uv.unwrap": 2.0, "bpy.ops.uv.mark_seam": 1.0}
+    names = TopicNames(frozenset({"uv"}), (), operators=operators)
+    told = numbered(Steps(reader, names).told())
+    run = [line for line in told if "`bpy.ops.uv." in line]
+    assert "mark_seam" in run[0]
+    assert "unwrap" in run[1]
+    assert _done_in_blender(told)
