@@ -24,10 +24,10 @@ def inserted(cls: str, function: str, scene: NewScene) -> Iterator[str]:
     symbol = scene.reader.symbol(cls)
     holder, _, collection = held(symbol.reached).rpartition(".") if symbol else ("", "", "")
     is_below = holder.startswith(f"{OBJ}.") and collection.endswith("[0]")
-    if not (is_below and function.endswith(f"_{_INSERTS}")):
-        return
     name = collection.partition("[")[0]
     owner = next((one.owner for one in scene.reader.by_name(name) if f"{TYPES}{one.target}" == cls), "")
+    if not (owner and is_below and function.endswith(f"_{_INSERTS}")):
+        return
     variable = scene.variables.of(owner)
     scene.variables.add(owner, variable)
     scene.shown |= {cls, owner}
