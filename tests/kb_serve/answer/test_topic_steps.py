@@ -222,7 +222,8 @@ def test_edit_bones_are_added_in_edit_mode(reader: BaseReader) -> None:
 def test_an_operator_comes_after_the_mode_that_it_runs_in(reader: BaseReader) -> None:
     names = TopicNames(frozenset({"mesh"}), (), operators={"bpy.ops.mesh.subdivide": 9.0})
     entered, run = _told(reader, names)
-    assert entered == "1. `bpy.ops.object.mode_set(mode='EDIT')`"
+    selected = "`bpy.ops.mesh.select_all(action='SELECT')`"
+    assert entered == f"1. `bpy.ops.object.mode_set(mode='EDIT')`; {selected}"
     assert "bpy.ops.mesh.subdivide(" in run
     (done,) = do_steps({"subdivide": [entered, "2. `bpy.ops.mesh.subdivide()`"]})
     assert not done.failed
