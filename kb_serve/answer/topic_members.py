@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key, terms, topic_key
 from kb_build.symbols.api_names import OPERATORS, TYPES
 from kb_build.symbols.flags import operator_areas
+from kb_build.symbols.lines import held
 from kb_serve.answer.steps.operators import calls_needed
 from kb_serve.answer.steps.topic_names import TopicNames
 from kb_serve.answer.steps.variable_names import class_called
@@ -18,6 +19,7 @@ from kb_serve.answer.topic_pages import CHAPTERS, PAGES_OF_NODES, SHORT_FOR, sub
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
 
+    from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
 
 _PARTS_OF_A_WINDOW = ("panel", "panels")
@@ -26,6 +28,7 @@ _MEMBERS = 6
 _NAMED, _NEAR, _FAR = 3.0, 2.0, 1.0  # a class or operator by its name, its page, a page far below
 _ASIDE = 0.2
 _OWN_NAMES = re.compile(r"Node|\.Theme|ViewerPath")  # what is asked for by its own name
+_CALLED_ON = re.compile(r"(?<![.\w])(\w+)\.(\w+)\(\)")
 _ON_ITS_MODULE = 2.0
 _UNUSUAL = 0.2  # presets, and what interface code calls
 
@@ -157,25 +160,23 @@ class TopicMembers:
         return any(link.endswith("index") and slug.startswith(link.removesuffix("index")) for link in links)
 
     def _worked_on(self, slug: str, paths: Collection[str]) -> Iterator[str]:
-        """What most operators of a chapter work on, where nothing of it can be made: what is in the thing that a call
-        makes which they need, as the strips of a sequence editor.
+        """What most operators of a chapter work on, where nothing else of it can be made: what is in the thing that a
+        call makes which they need, as the strips of a sequence editor.
         """
         operators = [
             symbol for path in paths if path.startswith(OPERATORS) and (symbol := self._reader.symbol(path))
         ]
-        needed = Counter(call for operator in operators for call in calls_needed(operator))
-        call, count = next(iter(needed.most_common(1)), ("", 0))
-        is_chapter = bool(self._reader.page_children(slug))
-        if (
-            not (call and is_chapter)
-            or count < len(operators) / 2
-            or self._reader.creations([*self._classes.keys() & paths])
-        ):
+        needed = Counter(maker for operator in operators for maker in _makers_needed(operator))
+        (variable, name), count = next(iter(needed.most_common(1)), (("", ""), 0))
+        if not (name and self._reader.page_children(slug)) or count < len(operators) / 2:
             return
-        variable, _, name = call.partition("(")[0].rpartition(".")
+        made = self._reader.creations([*self._classes.keys() & paths]).values()
         maker = self._reader.symbol(f"{class_called(variable)}.{name}")
-        for holder in maker.returns if maker else ():
-            for entry in self._reader.members(f"{TYPES}{holder.type}").values():
+        for result in maker.returns if maker else ():
+            holder = self._reader.symbol(f"{TYPES}{result.type}")
+            if holder is None or not all(one.call.startswith(f"{held(holder.reached)}.") for one in made):
+                continue
+            for entry in self._reader.members(holder.path).values():
                 if entry.type == "collection":
                     kinds = [kind.path for kind in self._reader.descendants(f"{TYPES}{entry.target}")]
                     yield from self._reader.creations(kinds)
@@ -218,6 +219,11 @@ class TopicMembers:
         for path, heaviest in members.items():
             totals[path] += sum(sorted(heaviest, reverse=True)[:_MEMBERS]) / _MEMBERS
         return totals
+
+
+def _makers_needed(operator: Symbol) -> set[tuple[str, str]]:
+    """The variables and functions that are called on them, before an operator runs."""
+    return {(match[1], match[2]) for call in calls_needed(operator) for match in _CALLED_ON.finditer(call)}
 
 
 def _without_place(title: str) -> str:

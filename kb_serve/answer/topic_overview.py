@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.pages.definitions import passage_text
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.lines import first_sentence
 from kb_serve.answer.budget import AnswerBlock, clip, tokens
@@ -24,6 +25,7 @@ _EDITOR = f"{TYPES}Space"
 _MOST_SETTINGS = 10
 _LATEST_MAKER = 5  # among the first steps
 STEPS = "how it is done"  # the name of the block that has them
+_SET_UP = "Setup"  # title of a page's section
 _HOW = "**How it is done**"
 _DONE = ("set on `", "` → `", "` makes `", "`obj.")  # in steps that make, set or call something
 _OVERVIEW_TOKENS = 1_200
@@ -76,8 +78,9 @@ class Topics:
         is_single = not self._reader.page_children(slug)
         settings = self._settings.labelled(slug) if is_single else []
         steps = [*self._how(page, names, settings)]
-        blocks = [AnswerBlock(head, "summary"), *steps]
+        blocks = [AnswerBlock(head, "summary"), *self._set_up(slug), *steps]
         lists = (
+            ("See also", [*self._sent_to(slug)]),
             ("Classes", [_line(entry) for entry in classes]),
             ("Operators", [_line(entry) for entry in operators]),
             ("Pages", [*self._page_lines(slug)]),
@@ -110,6 +113,13 @@ class Topics:
         told = "".join(steps)
         left = [entry for entry in settings if f"`{entry.name}`" not in told]
         yield from _list_of("Settings", [*self._settings.lines(left[:_MOST_SETTINGS])])
+
+    def _set_up(self, slug: str) -> Iterator[AnswerBlock]:
+        """What a page says must be there before: an image node that is baked to."""
+        page = self._reader.page(slug)
+        for section in page.sections if page else ():
+            if section.title == _SET_UP and (said := passage_text(section.text, -1)):
+                yield AnswerBlock(f"**{_SET_UP}** (from the manual)\n{said}", "setup")
 
     def _of_chapter(self, slug: str) -> list[SymbolEntry]:
         """The heaviest settings that the pages of a chapter name beside their labels."""
@@ -155,12 +165,26 @@ class Topics:
     def _entries(self, paths: Sequence[str] | dict[str, float]) -> list[SymbolEntry]:
         return [entry for path in paths if (entry := self._reader.entry(path))]
 
+    def _sent_to(self, slug: str) -> Iterator[str]:
+        """The pages of other chapters that a chapter's first page names and links to, as that on what replaces it."""
+        page = self._reader.page(slug)
+        if page is None or not page.children or len(page.sections) > 1:
+            return
+        text = " ".join(section.text for section in page.sections)
+        for link in page.links:
+            other = None if link.startswith(slug.removesuffix("index")) else self._reader.page_entry(link)
+            if other is not None and other.title in text:
+                yield self._page_line(other)
+
     def _page_lines(self, slug: str, depth: int = 2) -> Iterator[str]:
         for child in self._reader.page_children(slug):
-            said = first_sentence(said_of(child, self._reader))
-            yield clip(f"`{child.slug}` ({child.title}) {said}", _LINE_TOKENS)
+            yield self._page_line(child)
             if depth > 1:
                 yield from (f"  {line}" for line in self._page_lines(child.slug, depth - 1))
+
+    def _page_line(self, page: PageEntry) -> str:
+        said = first_sentence(said_of(page, self._reader))
+        return clip(f"`{page.slug}` ({page.title}) {said}", _LINE_TOKENS)
 
 
 def _line(entry: SymbolEntry) -> str:

@@ -12,8 +12,10 @@ from kb_build.symbols.api_names import NODE
 from kb_serve.recognise.names.enum_values import is_quoted_value
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from kb_serve.answer.topic_settings import TopicSettings
-    from kb_serve.reader import BaseReader, PageEntry
+    from kb_serve.reader import BaseReader, PageEntry, SymbolEntry
 
 _ASIDE_PAGES = ("contribute/", "addons/", "interface/controls/")
 PAGES_OF_NODES = "interface/controls/nodes/types/"
@@ -63,8 +65,16 @@ CHAPTERS = {
     "shader": "render/shader_nodes/",
 }
 _MAX_WORDS = 4
-# What simulations are called by what they are of, and words for what else is done with what a word stands for.
+# What simulations are called by what they are of, and what other programs call the same, by topic keys; and words for
+# what else is done with what a word stands for.
 _SIMULATED = {"fire": "fluid", "smoke": "fluid"}
+_ALSO_CALLED = {
+    topic_key(name): title
+    for title, names in {
+        "motion tracking": ("camera tracking", "match moving", "match move", "matchmoving"),
+    }.items()
+    for name in names
+}
 _EVERYDAY_WORDS = 2
 _AIMS = frozenset({"effect", "light", "lighting", "simulation"})
 _CALLED_SO = 4  # pages
@@ -115,8 +125,27 @@ class TopicPages:
             or self._with_more_words(plain)
             or self._with_more_words(made)
             or self._with_socket(plain)
+            or self._of_data(plain)
+            or self._in_chapter(plain)
             or self._in_other_words(plain)
         )
+
+    def _of_data(self, plain: str) -> str:
+        """The page of the data that some objects are of: text objects."""
+        data, _, last = plain.rpartition(" ")
+        slug = self._called(data) if topic_key(last) == topic_key(_OF_OBJECTS) else ""
+        return slug if any(map(self._reader.is_object_data, self._reader.symbols_of_page(slug))) else ""
+
+    def _in_chapter(self, plain: str) -> str:
+        """The chapter that is called with the name of the one that it is in, as UV unwrapping; unless a class is called
+        so.
+        """
+        above, _, name = plain.rpartition(" ")
+        if key(plain) in {key(entry.name) for entry in self._classes_called(plain)}:
+            return ""
+        around, chapter = self._called(above), self._called(name)
+        is_inside = chapter != around and bool(around) and _is_chapter_of(around, chapter)
+        return chapter if is_inside and self._reader.page_children(chapter) else ""
 
     def _in_other_words(self, plain: str) -> str:
         """The page of what the documentation calls otherwise, in an everyday word, or in two that stand for the same:
@@ -125,6 +154,8 @@ class TopicPages:
         """
         spoken = plain.lower().split()
         words = [word for word in spoken if word not in _AIMS] if len(spoken) <= _EVERYDAY_WORDS else []
+        if title := _ALSO_CALLED.get(topic_key(plain)):
+            return self._called(title)
         if len(words) == 1 and words[0] in _SIMULATED:
             return self._called(_SIMULATED[words[0]])
         known = {word: first_term(word) for word in words}
@@ -183,6 +214,8 @@ class TopicPages:
         self._reader.by_key.load((*keys, key(plain)))
         titled = [{slug for _, slug in self._reader.by_key(title)} for title in keys]
         titled[0] |= {slug for _, slug in self._reader.by_key(key(plain)) if self._reader.page_children(slug)}
+        if not chapter and len(titled[0]) == 1 and (doing := self._doing(plain, *titled[0])):
+            return doing
         if titled[0] and all(slug.startswith(_BONES) for slug in titled[0]):
             of_objects = {slug for _, slug in self._reader.by_key(topic_key(f"{plain} {_OF_OBJECTS}"))}
             titled[0] = of_objects or titled[0]
@@ -196,6 +229,26 @@ class TopicPages:
         # A page that explains nothing but settings, if no other may be meant.
         alone = next((slugs for slugs in titled if len(slugs) == 1), set[str]())
         return next((slug for slug in alone if self._sets_something(slug)), "")
+
+    def _doing(self, plain: str, titled: str) -> str:
+        """The page that explains the operator which does what a word says, the heaviest of several, if its address ends
+        so and the only page with that title explains another: Render Baking by baking. Empty for none.
+        """
+        if self._reader.page_children(titled):
+            return ""
+        wanted = terms(plain)
+        own = self._reader.symbols_of_page(titled)
+        if any(terms(path.rpartition(".")[2]) == wanted for path in own):
+            return ""
+        operators = [one for one in self._reader.by_name("_".join(wanted)) if one.kind == "operator"]
+        weights = self._reader.weights([one.path for one in operators])
+        doing: dict[str, float] = {}
+        for path, weight in weights.items():
+            slug = next(iter(self._reader.manual_links(path)), "").partition("#")[0]
+            if terms(slug.rpartition("/")[2]) == wanted:
+                doing[slug] = max(weight, doing.get(slug, 0.0))
+        first, *others = sorted(doing, key=lambda slug: -doing[slug]) or [""]
+        return first if all(doing[other] < doing[first] for other in others) else ""
 
     def _without_nodes(self, slugs: set[str], plain: str) -> set[str]:
         """Pages without the chapters of nodes, where another chapter has the very title: who asks for hair
@@ -236,8 +289,12 @@ class TopicPages:
 
     def _is_class(self, text: str) -> bool:
         """Whether a text in capitals may mean a class: ``Camera``, ``Particle System``, unlike ``Rigid Body``."""
+        return any(self._classes_called(text))
+
+    def _classes_called(self, text: str) -> Iterator[SymbolEntry]:
+        """The classes that are called so, by their names or labels."""
         entries = (self._reader.entry(identifier) for _, identifier in self._reader.by_key(key(text)))
-        return any(entry is not None and entry.kind == "class" for entry in entries)
+        return (entry for entry in entries if entry is not None and entry.kind == "class")
 
     def _is_topic(self, slug: str) -> bool:
         return self._may_be_topic(slug) and bool(

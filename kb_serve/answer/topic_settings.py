@@ -11,6 +11,7 @@ from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.lines import held, written
 from kb_build.symbols.paths import argument_of, last_name, plain_path
 from kb_serve.answer.budget import clip
+from kb_serve.answer.steps.choices import choice_of
 from kb_serve.answer.steps.new_scene import NewScene
 
 if TYPE_CHECKING:
@@ -54,7 +55,10 @@ class TopicSettings:
         for owner, entries in by_owner.items():
             symbol = self._reader.symbol(owner)
             name = owner.removeprefix(TYPES)
-            yield f"on `{symbol.reached}` (`{name}`):" if symbol and symbol.reached else f"of `{name}`:"
+            reached = symbol.reached if symbol else ""
+            choice = choice_of(reached, self._reader) if reached else None
+            after = f", after `{choice.code}`" if choice else ""
+            yield f"on `{reached}` (`{name}`){after}:" if reached else f"of `{name}`:"
             yield from (f"  {clip(entry.line, _LINE_TOKENS)}" for entry in entries)
 
     def as_value(self, text: str, slug: str) -> Iterator[str]:

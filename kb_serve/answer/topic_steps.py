@@ -11,11 +11,12 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import terms
-from kb_build.symbols.api_names import NODE, OBJECT, OPERATORS, STRUCT, TYPES
+from kb_build.symbols.api_names import ID, NODE, OBJECT, OPERATORS, STRUCT, TYPES
 from kb_build.symbols.flags import operator_areas, refused_nothing
 from kb_build.symbols.lines import operator_needs
 from kb_serve.answer.budget import tokens
 from kb_serve.answer.steps.creation_calls import CreationCalls
+from kb_serve.answer.steps.inserted import inserted
 from kb_serve.answer.steps.instances import Instances
 from kb_serve.answer.steps.members import call_of
 from kb_serve.answer.steps.new_scene import NewScene
@@ -24,6 +25,7 @@ from kb_serve.answer.steps.operators import POINT_CACHE, UNDO, runs
 from kb_serve.answer.steps.own_properties import made_by_subscript
 from kb_serve.answer.steps.places import PlaceSteps
 from kb_serve.answer.steps.reached import ReachedSettings
+from kb_serve.answer.steps.scene_parts import scene_parts
 from kb_serve.answer.steps.settings import OTHERS_ELEMENT, SettingSteps
 from kb_serve.answer.steps.trees import EMBEDDED_TREES, TreeSteps
 from kb_serve.interface import is_of_interface
@@ -88,7 +90,9 @@ class Steps:
         yield from self._functions()
         yield from self._given_objects()
         yield from made_by_subscript(self._names, self._reader)
-        is_made = self._is_made()
+        is_made = self._is_made() or not self._scene.shown.isdisjoint(self._classes[:1])
+        if not is_made:
+            yield from self._seen_from()
         makes_first = is_made or self._is_on_made()
         for part in (self._make, self._there) if makes_first else (self._there, self._make):
             yield from part()
@@ -123,14 +127,23 @@ class Steps:
     def _is_elsewhere(self, path: str) -> bool:
         """Whether a class only has the topic's words in its name, and other pages explain it: a constraint that tracks
         is no tracking of a film. The modifier that is called as the topic is its own wherever it is explained, and what
-        is called so, with its kinds, if nothing else of the topic is made.
+        is called so, with its kinds, if nothing else of the topic is made: the user's asset library for asset
+        libraries.
         """
         if path not in self._names.elsewhere:
             return False
         is_modifier = path.endswith("Modifier") and self._names.is_called(path.removesuffix("Modifier"))
         own = self._creations.keys() & self._names.classes.keys() - self._names.elsewhere
         called = (self._names.is_called(base.path) for base in self._reader.lineage(path))
-        return not (is_modifier or (not own and any(called)))
+        return not (is_modifier or (not own and (any(called) or self._is_kept_by_user(path))))
+
+    def _is_kept_by_user(self, path: str) -> bool:
+        """Whether Blender's preferences hold what ends as the topic is called: the user's asset libraries."""
+        return path in self._creations and not self._is_in_scene(path) and self._names.ends_as_title(path)
+
+    def _is_in_scene(self, path: str) -> bool:
+        """Whether a class is made, and that not in Blender's interface."""
+        return path in self._creations and not is_of_interface(self._creations[path].call)
 
     def _explained(self) -> list[str]:
         """What the page explains and can be made, if its name says something of the title: what a page on one kind of
@@ -193,9 +206,7 @@ class Steps:
 
     def _is_made(self) -> bool:
         """Whether the topic's main class is made, or held by a modifier that is."""
-        return any(path in self._creations for path in self._classes[:1]) or any(
-            map(self._has_modifier, self._classes)
-        )
+        return any(map(self._is_in_scene, self._classes[:1])) or any(map(self._has_modifier, self._classes))
 
     def _is_on_made(self) -> bool:
         """Whether the topic's main class is reached through something that its steps make."""
@@ -205,15 +216,22 @@ class Steps:
         return any(main.reached.startswith(f"{maker}.") for main in mains if main for maker in makers)
 
     def _functions(self) -> Iterator[str]:
-        """Functions that every thing has and that are called as the topic is: ``keyframe_insert``."""
+        """Functions that every thing has and that are called as the topic is, ``keyframe_insert``, or that every
+        data-block has and that do what an operator of the topic does: ``asset_mark``, as ``asset.mark``.
+        """
         paths = [path for name in self._names.stems() for path in self._reader.functions_named(name)]
+        paths = [path for path in paths if path.startswith(f"{STRUCT}.")]
+        alike = (path.removeprefix(OPERATORS).replace(".", "_") for path in self._names.operators)
+        paths += [f"{ID}.{name}" for name in alike]
         entries = (
             self._reader.entry(path)
-            for path in paths
-            if path.startswith(f"{STRUCT}.") and UNDO.isdisjoint(path.rpartition(".")[2].split("_"))
+            for path in dict.fromkeys(paths)
+            if UNDO.isdisjoint(path.rpartition(".")[2].split("_"))
         )
         for entry in self._reader.heaviest(entry for entry in entries if entry)[:_FUNCTIONS]:
             yield f"`obj.{call_of(entry)}` — {entry.line.partition(' — ')[2]}"
+            for cls in filter(self._names.is_called, self._classes[:1]):
+                yield from inserted(cls, entry.name, self._scene)
 
     def _given_objects(self) -> Iterator[str]:
         """The pointers of an object to another that are called as the topic is: ``parent``."""
@@ -226,12 +244,25 @@ class Steps:
             if (inverse := f"matrix_{name}_inverse") in members:
                 yield f"`obj.{inverse} = other.matrix_world.inverted()` — it stays where it is"
 
+    def _seen_from(self) -> Iterator[str]:
+        """What the topic's scene has one of, where that weighs enough: the camera, before something is rendered."""
+        for cls, expression in scene_parts(self._reader):
+            is_needed = cls in self._creations and cls not in self._names.elsewhere and self._counts(cls)
+            if is_needed and self._names.operators:
+                yield from self._calls.making({cls: self._creations[cls]})
+                yield from self._scene.obj.made_of(cls)
+                yield f"`{expression} = obj`"
+
     def _make(self) -> Iterator[str]:
+        all_ = self._groups()
         groups = [
             group
-            for rank, group in enumerate(self._groups())
+            for rank, group in enumerate(all_)
             if self._is_main(group) and not (rank and (self._is_in_area(group) or self._is_by_hand(group)))
         ][:_MAKERS]
+        # With the first what the same collection makes by other functions: strips of sounds, of films, of images.
+        beside = [group for group in all_ if groups and _is_made_alike(group, groups[0])]
+        groups = [*beside, *(group for group in groups if group not in beside)]
         # What an operator makes that needs nothing comes first: a world, before what is in it makes one; nodes come
         # before their items, which they are told with.
         firsts = {id(group): next(iter(group.values())) for group in groups}
@@ -274,7 +305,8 @@ class Steps:
         ):
             creation = self._creations.get(path)
             is_left = path in _NOT_MADE or self._is_of_made_data(path)
-            if creation and not is_left and not is_of_interface(creation.call):
+            is_aside = not (self._is_in_scene(path) or self._is_kept_by_user(path))
+            if creation and not is_left and not is_aside:
                 groups[creation.maker][path] = creation
         # The first group is the heaviest class's; of the others, many light classes outweigh a single one.
         first, others = [*groups.values()][:1], [*groups.values()][1:]
@@ -331,6 +363,12 @@ class Steps:
         """Whether classes weigh enough, together, beside the topic's heaviest."""
         heaviest_one = max(map(self._names.classes.__getitem__, self._classes))
         return self._names.weight_of(paths) >= _LEAST_SHARE * heaviest_one
+
+
+def _is_made_alike(creations: Mapping[str, Creation], others: Mapping[str, Creation]) -> bool:
+    """Whether the makers of some classes are functions of one class."""
+    makers = {next(iter(each.values())).maker.rpartition(".")[0] for each in (creations, others)}
+    return len(makers) == 1 and not any(maker.startswith(OPERATORS) for maker in makers)
 
 
 def _needs_nothing(maker: Symbol) -> bool:

@@ -107,10 +107,12 @@ def _operate(step: str, names: Names) -> None:
     """An operator that makes a thing is called, if what it says to need is there, and so is one of which nothing is
     said, as that which changes the mode; of others ``poll`` is asked.
     """
-    code = _CODE.findall(step)[0]
-    if step == f"`{code}`":
-        _run(code, names)
+    codes = _CODE.findall(step)
+    if step == "; ".join(f"`{code}`" for code in codes):
+        for code in codes:
+            _run(code, names)
         return
+    code = codes[0]
     runs = eval(code.partition("(")[0], names).poll()  # noqa: S307 - our own answers
     is_told = " (takes " in step or " (not seen " in step
     if " → " in step:

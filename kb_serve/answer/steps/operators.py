@@ -44,6 +44,7 @@ UNDO = frozenset(
         "unpack",
     }
 )  # fmt: skip
+_MARK = "mark"  # what others then go by, as seams
 _SHOW = frozenset({"play", "show"})  # what has been done
 _MAKE_OR_REMOVE = UNDO | frozenset(
     {
@@ -87,6 +88,7 @@ def runs(names: TopicNames, scene: NewScene, *, is_cached: bool, is_made: bool) 
     first = _of_modifiers(names, scene)
     found = (reader.symbol(path) for path in dict.fromkeys([*first, *operators]))
     told = [symbol for symbol in found if symbol and _has_its_part(symbol, names, scene)][:_MOST]
+    told.sort(key=lambda symbol: _MARK not in symbol.name.split("_"))
     for symbol in [symbol for symbol in told if not _only_shows(symbol.path)] or told:
         yield from before(symbol, scene)
         step, argument = _WORKS_WITH.get(symbol.path, ("", _part_named(symbol, scene)))

@@ -102,6 +102,16 @@ class PointerFills:
                 undo()
         return ready
 
+    def loading(self, cls: str) -> str:
+        """The call that loads a data-block which nothing but a file makes, as a film; empty for none."""
+        for entry in self._reader.by_name("load"):
+            symbol = self._reader.symbol(entry.path)
+            holders = self._reader.members(_BLEND_DATA).values()
+            holder = next((one.name for one in holders if f"{TYPES}{one.collection}" == entry.owner), "")
+            if symbol is not None and holder and any(result.type == cls for result in symbol.returns):
+                return f"bpy.data.{holder}.load(filepath)"
+        return ""
+
     def _state(self) -> tuple[set[str], dict[str, str], set[str], set[str]]:
         return set(self._filled), dict(self._chosen), set(self._called), set(self._whole)
 
@@ -160,22 +170,12 @@ class PointerFills:
         if there := self._variables.there(target):
             return Ready([], there)
         made = self._reader.creations([target]).get(target)
-        call = made.call if made else self._loading(pointer.target)
+        call = made.call if made else self.loading(pointer.target)
         if "readonly" in pointer.flags or not call.startswith("bpy.data."):
             return None
         variable = self._variables.of(target)
         self._variables.add(target, variable)
         return Ready([f"`{variable} = {call}`; `{expression} = {variable}`"], variable)
-
-    def _loading(self, cls: str) -> str:
-        """The call that loads a data-block which nothing but a file makes, as a film; empty for none."""
-        for entry in self._reader.by_name("load"):
-            symbol = self._reader.symbol(entry.path)
-            holders = self._reader.members(_BLEND_DATA).values()
-            holder = next((one.name for one in holders if f"{TYPES}{one.collection}" == entry.owner), "")
-            if symbol is not None and holder and any(result.type == cls for result in symbol.returns):
-                return f"bpy.data.{holder}.load(filepath)"
-        return ""
 
     def _made(self, collection: SymbolEntry, above: str, element: str) -> _Made | None:
         """What makes the element of the object's collection that a key names, of a kind that only has that; None if no

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.lines import held
+from kb_serve.answer.steps.choices import choice_of
 from kb_serve.answer.steps.members import are_settings_seen, settings_of
 from kb_serve.interface import is_of_interface
 
@@ -52,6 +53,8 @@ class ReachedSettings:
             left -= 1
             self._scene.shown.add(cls)
             yield from ready.steps
+            if choice := choice_of(expression, self._reader):
+                yield f"`{choice.code}` — a new one has `{choice.usual!r}`"
             # The steps' own object need not be the active one.
             is_own = expression.startswith("bpy.context.object") or ready.expression != held(expression)
             yield f"set on `{ready.expression if is_own else expression}` {told}"

@@ -27,7 +27,9 @@ if TYPE_CHECKING:
 _LEAST = 1  # weight of a collection or function
 _MEMBERS = 3  # collections, and functions
 _HOLDERS = 4  # pointers of a thing whose settings are shown
-_ADDING = ("new", "add", "append")  # what functions that add are called
+_ADDING = ("new", "add", "append", "link")  # what functions that add are called
+_FILE_ALONE = "`filepath`"  # settings of what is a file's contents
+_STUB = "UnknownType"  # Blender's, for elements of which it says nothing
 _LOOK_UP = frozenset({"get", "current", "find"})  # in names of functions that do nothing to a thing
 OTHERS_ELEMENT = re.compile(r"\[.*\].*\.")  # … of what has an element that somebody else must have made
 
@@ -99,21 +101,30 @@ class SettingSteps:
             yield f"set on `{name}`: {settings}"
 
     def _on_elements(self, cls: str, variable: str) -> Iterator[str]:
-        """The settings of the elements that a new thing has, where nothing makes them: a variable's target."""
+        """The settings of the elements that a new thing has, where nothing makes them: a variable's target; the points
+        of a shape key, of which it has as many as the mesh.
+        """
         for entry in self._collections(cls):
             element = f"{TYPES}{entry.target}"
             symbol = self._reader.symbol(entry.path)
-            has_some = symbol is not None and EMPTY not in symbol.flags
-            if not (has_some and self._belongs(element)) or self._added_by(entry):
+            may_have_some = symbol is not None and EMPTY not in symbol.flags
+            if not (may_have_some and self._belongs(element)) or self._added_by(entry):
                 continue
             settings = "" if self._reader.creations([element]) else settings_of(element, self._reader)
-            if settings and are_settings_seen(element, self._reader):
-                self._scene.shown.add(element)
-                yield f"set on `{variable}.{entry.name}[0]` (`{entry.target}`): {settings}"
+            if not settings:
+                continue
+            self._scene.shown.add(element)
+            has_one = are_settings_seen(element, self._reader)
+            elements = f"`{variable}.{entry.name}[0]`" if has_one else f"each of `{variable}.{entry.name}`"
+            yield f"set on {elements} (`{entry.target}`): {settings}"
 
     def _collections(self, cls: str) -> list[SymbolEntry]:
         """The main collections of a thing; after those that scripts use most, its own that things are added to."""
-        all_ = [entry for entry in self._reader.members(cls).values() if entry.type == "collection"]
+        all_ = [
+            entry
+            for entry in self._reader.members(cls).values()
+            if entry.type == "collection" and entry.target != _STUB
+        ]
         main = self._main(all_)
         own = (entry for entry in all_ if entry.owner == cls and entry not in main and self._added_by(entry))
         return [*main, *own][:_MEMBERS]
@@ -161,7 +172,19 @@ class SettingSteps:
             self._reader.members(f"{TYPES}{collection.collection}").values() if collection.collection else ()
         )
         adding = [one for one in functions if one.kind == "function" and one.name.startswith(_ADDING)]
-        return next((call_of(one) for one in self._reader.heaviest(adding)), "")
+        return next((self._given_elements(one, collection) for one in self._reader.heaviest(adding)), "")
+
+    def _given_elements(self, function: SymbolEntry, collection: SymbolEntry) -> str:
+        """A call that adds to a collection, given an element that is there: the object that is linked. What has the
+        collection is none of its own elements.
+        """
+        call, symbol = call_of(function), self._reader.symbol(function.path)
+        for parameter in symbol.parameters if symbol else ():
+            cls = f"{TYPES}{parameter.type}"
+            there = self._scene.variables.there(cls) if parameter.required else ""
+            if there and cls != collection.owner and parameter.type == collection.target:
+                call = re.sub(rf"\b{parameter.name}\b(?=[,)])", there, call)
+        return call
 
     def _with_it(self, collection: SymbolEntry) -> str:
         """What is then called on what a new element has: strokes are added to the drawing of a frame."""
@@ -209,11 +232,22 @@ class SettingSteps:
                 if not holder:
                     continue
                 waiting.append((target, f"{holder}.{entry.name}"))
-                if left and (settings := settings_of(target, self._reader)):
+                if left and (loaded := self._loaded(pointer)):
+                    left -= 1
+                    yield f"`{holder}.{entry.name} = {loaded}`"
+                elif left and (settings := settings_of(target, self._reader)):
                     left -= 1
                     yield from steps
                     yield from self._scene.pointers.steps(pointer, holder)
                     yield f"set on `{holder}.{entry.name}` (`{entry.target}`): {settings}"
+
+    def _loaded(self, pointer: Symbol) -> str:
+        """The call that loads what a pointer takes, where nothing is set on that but its file, as on a font; empty for
+        none.
+        """
+        is_file = settings_of(f"{TYPES}{pointer.target}", self._reader) == _FILE_ALONE
+        is_taken = is_file and "readonly" not in pointer.flags
+        return self._scene.pointers.loading(pointer.target) if is_taken else ""
 
     def _on_another(self, cls: str, pointer: str) -> tuple[str, list[str]]:
         """What a further instance is called, and the steps that make it on an object of its own: one value of a setting

@@ -49,6 +49,11 @@ class TopicNames:
         """Whether a class has the topic's words and no other."""
         return frozenset(terms(path.removeprefix(TYPES))) in self.words
 
+    def ends_as_title(self, path: str) -> bool:
+        """Whether the name of a class ends in the several words of the title: a user's asset library."""
+        words = terms(path.removeprefix(TYPES))
+        return any(len(title) > 1 and title == frozenset(words[-len(title) :]) for title in self.words[:1])
+
     def stems(self) -> list[str]:
         """The topic's keys, in the singular too."""
         names = (name for each in sorted(self.keys) for name in (each, each.removesuffix("s")))

@@ -6,8 +6,9 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
-from kb_build.symbols.api_names import OBJECT, TYPES
+from kb_build.symbols.api_names import OBJECT, OPERATORS, TYPES
 from kb_build.symbols.flags import operator_active
+from kb_serve.answer.pages import passage_block
 from kb_serve.answer.steps.variable_names import OBJ
 
 if TYPE_CHECKING:
@@ -22,9 +23,10 @@ ACTIVATE = "bpy.context.view_layer.objects.active = obj"
 _SCENE = f"{TYPES}Scene"
 OTHER = "other"  # what a second object is called
 _MESH = "MESH"
-_OBJECT_MODE = "OBJECT"
+_OBJECT_MODE, _EDIT_MODE = "OBJECT", "EDIT"
 _UPDATE = "bpy.context.view_layer.update()"
 _BY = " by "
+_WORKS_ON_SELECTED = re.compile(r"\bselected\b", re.I)
 _ADDED_TYPE = re.compile(r"object\.add\(type='(\w+)'\)")
 _NEW_NAME = re.compile(r'\bnew\("[^"]*"')
 
@@ -117,7 +119,20 @@ class WorkingObject:
             return []
         if modes is None or modes.takes(self._mode):
             return self.activation()
-        return self.to_mode(_OBJECT_MODE if modes.is_others else modes.names[0])
+        entered = self.to_mode(_OBJECT_MODE if modes.is_others else modes.names[0])
+        return [*entered, *self._selecting(operator)] if entered else []
+
+    def _selecting(self, operator: Symbol) -> list[str]:
+        """What selects all of it in Edit Mode, for an operator on what is selected; nothing for another."""
+        if self._mode != _EDIT_MODE or not _WORKS_ON_SELECTED.search(self._said_of(operator)):
+            return []
+        select = self._reader.symbol(f"{OPERATORS}{self._kind.lower()}.select_all")
+        takes_action = select is not None and any(one.name == "action" for one in select.parameters)
+        return [f"{select.path}(action='SELECT')"] if select and takes_action else []
+
+    def _said_of(self, operator: Symbol) -> str:
+        blocks = passage_block(operator.path, self._reader)
+        return " ".join((operator.description, *(block.text for block in blocks)))
 
     def is_refused_by(self, operator: Symbol) -> bool:
         """Whether an operator works on objects of other types than the one that steps have made."""

@@ -266,6 +266,7 @@ def test_what_a_chapter_does_belongs_to_its_pages_that_say_so(
         assert (render.path in TopicMembers(own).names(slug, title).operators) is belongs
 
 
+TEXT = "modeling/texts/index"
 BONES, OBJECTS = "animation/armatures/bones/editing/parenting", "scene_layout/object/editing/parent"
 FOG, SKY, FLUID = (
     "render/shader_nodes/shader/volume_scatter",
@@ -278,6 +279,8 @@ FOUND = {
     FOG: ("Volume Scatter", "bpy.types.ShaderNodeVolumeScatter"),
     SKY: ("Environment Texture Node", "bpy.types.ShaderNodeTexEnvironment"),
     FLUID: ("Fluid", "bpy.types.FluidModifier"),
+    MOTION: ("Motion Tracking", "bpy.types.MovieTracking"),
+    TEXT: ("Text", "bpy.types.TextCurve"),
 }
 
 
@@ -290,6 +293,12 @@ FOUND = {
         ("volumetric fog", FOG),
         ("HDRI lighting", SKY),
         ("smoke simulation", FLUID),
+        ("camera tracking", MOTION),
+        ("match moving", MOTION),
+        ("matchmove", MOTION),
+        ("text objects", TEXT),
+        ("a text object", TEXT),
+        ("fluid objects", ""),  # no objects are of its data
         # What stands for other things, or of which more is said.
         ("environment fog", ""),
         ("remove fog", ""),
@@ -299,12 +308,52 @@ FOUND = {
 def test_a_topic_is_found_by_what_people_call_it(
     tmp_path: Path, reader: BaseReader, text: str, found: str
 ) -> None:
-    symbols = [symbol for _, path in FOUND.values() if (symbol := reader.symbol(path))]
+    paths = (f"{TYPES}Object.type", *(path for _, path in FOUND.values()))
+    symbols = [symbol for path in paths if (symbol := reader.symbol(path))]
     pages = [page(slug, title) for slug, (title, _) in FOUND.items()]
     links = [Link(path, slug, "manual") for slug, (_, path) in FOUND.items()]
     write_base(tmp_path / "base.sqlite", Contents(symbols, pages, links, {}))
     with closing(BaseReader(tmp_path / "base.sqlite")) as own:
         assert Topics(own).find(text) == found
+
+
+@pytest.mark.parametrize(("text", "found"), [("uv unwrap", 1), ("mesh unwrap", None), ("uv seams", None)])
+def test_a_chapter_is_found_with_the_name_of_the_one_that_it_is_in(
+    tmp_path: Path, text: str, found: int | None
+) -> None:
+    slugs = ("mesh/uv/index", "mesh/uv/unwrapping/index", "mesh/uv/unwrapping/seams", "other/mesh/index")
+    titles = ("UVs", "Unwrapping", "Seams", "Meshes")
+    below = ((slugs[1],), (slugs[2],), (), ("other/mesh/part",))
+    pages = [
+        replace(page(slug, title), children=children)
+        for slug, title, children in zip(slugs, titles, below, strict=True)
+    ]
+    pages.append(page("other/mesh/part", "Part"))
+    write_base(tmp_path / "base.sqlite", Contents([], pages, (), {}))
+    with closing(BaseReader(tmp_path / "base.sqlite")) as own:
+        assert Topics(own).find(text) == ("" if found is None else slugs[found])
+
+
+@pytest.mark.parametrize(
+    ("operators", "found"),
+    [
+        ({"bpy.ops.object.bake": "render/cycles/baking"}, 0),
+        ({"bpy.ops.object.bake": "render/cycles/bake_types"}, None),
+        ({}, None),
+    ],
+)
+def test_a_word_for_what_an_operator_does_finds_the_page_on_that(
+    tmp_path: Path, reader: BaseReader, operators: dict[str, str], found: int | None
+) -> None:
+    titled = "modeling/geometry_nodes/baking"
+    links = [Link("bpy.ops.object.geometry_node_bake_single", titled, "manual")]
+    links += [Link(path, slug, "manual") for path, slug in operators.items()]
+    symbols = [symbol for link in links if (symbol := reader.symbol(link.source))]
+    pages = [page(titled, "Baking"), *(page(slug, "More on It") for slug in operators.values())]
+    write_base(tmp_path / "base.sqlite", Contents(symbols, pages, links, {}))
+    with closing(BaseReader(tmp_path / "base.sqlite")) as own:
+        slug = titled if found is None else list(operators.values())[found]
+        assert {Topics(own).find(word) for word in ("baking", "bake")} == {slug}
 
 
 def test_the_first_steps_of_a_topic_make_what_it_is_about(tmp_path: Path, reader: BaseReader) -> None:

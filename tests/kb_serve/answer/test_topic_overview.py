@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import ast
 import re
+from contextlib import closing
 from typing import TYPE_CHECKING
 
 import pytest
 
+from kb_build.store import Contents, write_base
+from kb_build.symbols.records import Link, Page, Section
 from kb_serve.answer.budget import tokens
 from kb_serve.answer.topic_overview import Topics
+from kb_serve.reader import BaseReader
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from kb_serve.knowledge_base import KnowledgeBase
-    from kb_serve.reader import BaseReader
 
 
 @pytest.fixture(scope="module")
@@ -146,3 +151,43 @@ def test_every_page_is_found_by_its_slug_its_url_and_among_its_title(
             assert slug in {hit.id for hit in kb.query(title, limit=50).hits}
         if url and source == "manual":
             assert kb.query(url).hits[0].id == slug
+
+
+def test_a_chapter_is_told_with_the_page_that_it_sends_to(tmp_path: Path) -> None:
+    text = "This is the old hair. Read about the new hair on the Hair Nodes page."
+    old, new, below = "particles/hair/index", "nodes/hair/index", "particles/hair/length"
+    pages = [
+        Page(slug, "manual", "5.1", title, (Section("top", title, 1, text),), children=children, links=links)
+        for slug, title, children, links in (
+            (old, "Hair", (below,), (new, below)),
+            (new, "Hair Nodes", (), ()),
+            (below, "Length", (), ()),
+        )
+    ]
+    write_base(tmp_path / "base.sqlite", Contents([], pages, (), {}))
+    with closing(BaseReader(tmp_path / "base.sqlite")) as own:
+        told = [block.text for block in Topics(own).overview(old).blocks]
+    (also,) = [block for block in told if block.startswith("**See also**")]
+    assert f"`{new}` (Hair Nodes)" in also
+    assert below not in also
+
+
+def test_what_a_page_says_must_be_there_stands_before_the_steps(tmp_path: Path, reader: BaseReader) -> None:
+    slug = "render/cycles/baking"
+    sections = (
+        Section("top", "Render Baking", 1, "Shaders are baked to images."),
+        Section("setup", "Setup", 2, "Baking requires a mesh to have a UV map.\n\nIt takes its time."),
+    )
+    bake = reader.symbol("bpy.ops.object.bake")
+    assert bake
+    contents = Contents(
+        [bake],
+        [Page(slug, "manual", "5.1", "Render Baking", sections)],
+        [Link(bake.path, slug, "manual")],
+        {},
+    )
+    write_base(tmp_path / "base.sqlite", contents)
+    with closing(BaseReader(tmp_path / "base.sqlite")) as own:
+        told = [block.text for block in Topics(own).overview(slug).first]
+    assert told[1].endswith("Baking requires a mesh to have a UV map.")
+    assert "bpy.ops.object.bake(" in told[2]

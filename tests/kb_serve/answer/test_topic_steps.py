@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import TYPES, steps
 
+from kb_build.index.analysis import terms
 from kb_build.symbols.api_names import STRUCT
 from kb_serve.answer.steps.topic_names import TopicNames
 from kb_serve.answer.topic_steps import Steps, numbered
@@ -223,7 +224,8 @@ def test_edit_bones_are_added_in_edit_mode(reader: BaseReader) -> None:
 def test_an_operator_comes_after_the_mode_that_it_runs_in(reader: BaseReader) -> None:
     names = TopicNames(frozenset({"mesh"}), (), operators={"bpy.ops.mesh.subdivide": 9.0})
     entered, run = _told(reader, names)
-    assert entered == "1. `bpy.ops.object.mode_set(mode='EDIT')`"
+    selected = "`bpy.ops.mesh.select_all(action='SELECT')`"
+    assert entered == f"1. `bpy.ops.object.mode_set(mode='EDIT')`; {selected}"
     assert "bpy.ops.mesh.subdivide(" in run
     (done,) = do_steps({"subdivide": [entered, "2. `bpy.ops.mesh.subdivide()`"]})
     assert not done.failed
@@ -390,4 +392,107 @@ def test_a_light_is_set_with_what_only_its_type_has(reader: BaseReader) -> None:
     told = steps(reader, "light", "Light")
     (own,) = [line for line in told if "(`PointLight`)" in line]
     assert "`energy` = 10" in own
+    assert _done_in_blender(told)
+
+
+def test_a_new_collection_gets_the_object(reader: BaseReader) -> None:
+    told = steps(reader, "collections", "Collection")
+    assert "`collection.objects.link(obj)`" in " ".join(told)
+    assert "`collection.children.link(child)`" in " ".join(told)  # another one: none is its own child
+
+
+def test_a_shape_key_has_points_that_are_moved(reader: BaseReader) -> None:
+    told = steps(reader, "shape keys", "ShapeKey", "ShapeKeyPoint")
+    assert any("set on each of `key.points` (`ShapeKeyPoint`): `co`" in line for line in told)
+    assert "UnknownType" not in " ".join(told)
+    assert _done_in_blender(told)
+
+
+def test_what_a_file_alone_makes_is_loaded(reader: BaseReader) -> None:
+    told = steps(reader, "text", "TextCurve", "VectorFont")
+    assert any(line.endswith("`object_data.font = bpy.data.fonts.load(filepath)`") for line in told)
+    assert "`VectorFont`" not in " ".join(told)
+
+
+def test_settings_of_one_engine_come_after_it_is_chosen(reader: BaseReader) -> None:
+    told = steps(reader, "rendering", "CyclesRenderSettings")
+    chosen, set_on = (line.partition(". ")[2] for line in told)
+    assert chosen.startswith("`scene.render.engine = 'CYCLES'`")
+    assert set_on.startswith("set on `bpy.context.scene.cycles`")
+
+
+def test_a_key_that_is_inserted_is_set_where_it_is(reader: BaseReader) -> None:
+    words = (frozenset(terms("keyframes")),)
+    names = TopicNames(
+        frozenset({"keyframes"}),
+        words,
+        classes={f"{TYPES}Keyframe": 1.0},
+        operators={"bpy.ops.anim.keying_set_export": 1.0},
+        title="keyframes",
+    )
+    told = numbered(Steps(reader, names).told())
+    assert len(told) == 4  # operators that do something else are none
+    assert told[0].startswith("1. `obj.keyframe_insert(")
+    assert told[1].endswith("fcurves[0]` → `FCurve`")
+    assert told[2].startswith("3. set on `fcurve.keyframe_points[0]` (`Keyframe`): ")
+    assert told[3].startswith("4. set on `fcurve` (`FCurve`): ")
+    assert _done_in_blender(told)
+
+
+def test_what_the_user_keeps_is_made_in_the_preferences(reader: BaseReader) -> None:
+    library, mark = f"{TYPES}UserAssetLibrary", "bpy.ops.asset.mark"
+    names = TopicNames(
+        frozenset({"assetlibraries"}),
+        (frozenset(terms("asset libraries")),),
+        classes={library: 1.0},
+        operators={mark: 1.0},
+        title="assetlibraries",
+        elsewhere=frozenset({library}),
+    )
+    told = numbered(Steps(reader, names).told())
+    assert told[0].startswith("1. `obj.asset_mark()`")
+    assert "`library = bpy.context.preferences.filepaths.asset_libraries.new()`" in told[1]
+    assert "`path`" in told[2]
+    assert _done_in_blender(told)
+    assert "preferences" not in " ".join(steps(reader, "library", "UserAssetLibrary", "Library"))
+
+
+def test_strips_of_all_sources_are_made_first(reader: BaseReader) -> None:
+    kinds = ("SoundStrip", "TextStrip", "BrightContrastModifier", "MovieStrip", "ImageStrip")
+    told = steps(reader, "editing", *kinds)
+    made = [line.partition(".new")[2].partition("(")[0] for line in told if ".new" in line]
+    assert made == ["_sound", "_effect", "_movie", "_image", ""]
+
+
+def test_a_scene_that_is_rendered_has_a_camera(reader: BaseReader) -> None:
+    names = TopicNames(
+        frozenset({"rendering"}),
+        (frozenset(terms("rendering")),),
+        classes={f"{TYPES}RenderSettings": 2.0, f"{TYPES}Camera": 1.0},
+        operators={"bpy.ops.render.render": 1.0},
+        title="rendering",
+    )
+    told = numbered(Steps(reader, names).told())
+    assert told[2] == "3. `scene.camera = obj`"
+    assert any("bpy.ops.render.render(" in line for line in told[3:])
+    assert _done_in_blender(told)
+
+
+@pytest.mark.parametrize(("name", "selects"), [("uv.smart_project", True), ("mesh.knife_project", False)])
+def test_what_works_on_what_is_selected_comes_after_that(
+    reader: BaseReader, name: str, *, selects: bool
+) -> None:
+    names = TopicNames(frozenset({name.partition(".")[0]}), (), operators={f"bpy.ops.{name}": 1.0})
+    told = " ".join(Steps(reader, names).told())
+    assert f"bpy.ops.{name}(" in told
+    assert ("bpy.ops.mesh.select_all(action='SELECT')" in told) is selects
+
+
+def test_what_others_go_by_is_marked_first(reader: BaseReader) -> None:
+    operators = {"bpy.ops.uv.unwrap": 2.0, "bpy.ops.uv.mark_seam": 1.0}
+    names = TopicNames(frozenset({"uv"}), (), operators=operators)
+    told = numbered(Steps(reader, names).told())
+    run = [line for line in told if "`bpy.ops.uv." in line]
+    assert "mark_seam" in run[0]
+    assert "unwrap" in run[1]
     assert _done_in_blender(told)
