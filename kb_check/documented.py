@@ -26,7 +26,7 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import last_name
 from kb_check.calls import calls_by_node
 from kb_check.literals import items, written
-from kb_check.made_here import bindings
+from kb_check.made_here import bindings, once_bound
 from kb_check.misfits import Misfit, describe, shown
 
 if TYPE_CHECKING:
@@ -181,21 +181,15 @@ def _holding(kinds: tuple[Type, ...]) -> str:
 
 def _is_extruded(script: Script, node: ast.expr) -> bool:
     """Whether a value is what extruding faces gave, whole: vertices, edges and faces in one list."""
-    match _once_bound(script, node):
+    match once_bound(script, node):
         case ast.Subscript(value=result, slice=ast.Constant(value="geom")):
-            made = _once_bound(script, result)
+            made = once_bound(script, result)
         case _:
             return False
     call = calls_by_node(script).get(made) if isinstance(made, ast.Call) else None
     given = call.argument("geom") if call and call.callee.symbol.path == _EXTRUDING else None
     kind = script.type_of(given) if given else None
     return kind is not None and _element(kind) == Instance(_FACE)
-
-
-def _once_bound(script: Script, node: ast.expr) -> ast.expr:
-    """The one value that a name has, or else the expression itself."""
-    values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else []
-    return values[0] if len(values) == 1 and values[0] else node
 
 
 def _takes(classes: tuple[str, ...], is_many: bool) -> str:

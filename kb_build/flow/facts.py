@@ -183,6 +183,8 @@ SET_ACTIVE = f"{T}LayerObjects.active"
 LAYER_ITEM = "bmesh.types.BMLayerItem"
 LAYERS = "bmesh.types.BMLayerCollection"
 ELEMENT = "[]"  # the trait that names what an instance holds
+LAYERS_OF = "of"  # the trait of layers, and of one of them, that names what they were read from
+LAYER_ACCESS = "bmesh.types.BMLayerAccess"  # how the classes of that begin, which end with an element's name
 
 
 def made_by(operator: str) -> str:

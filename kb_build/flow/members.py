@@ -11,6 +11,7 @@ from kb_build.flow.api import ARRAY
 from kb_build.flow.core import ANY, Core
 from kb_build.flow.facts import (
     DERIVED_BY_SCRIPTS,
+    ELEMENT,
     HALF_KNOWN,
     LAYER_ITEM,
     NODES_THAT_KEEP_NAMES,
@@ -406,8 +407,8 @@ class Members(Core):
         if kind.cls == "mathutils.Matrix":
             return Instance("mathutils.Vector")
         key = without_none(key)
-        if isinstance(key, Instance) and key.cls == LAYER_ITEM and key.traits:
-            return key.traits[0][1]
+        if isinstance(key, Instance) and key.cls == LAYER_ITEM and (held := key.trait(ELEMENT)):
+            return held
         return self.api.element(kind)
 
     def collection_item(self, kind: Collection, key: Type, node: ast.AST) -> Type:
