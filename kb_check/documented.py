@@ -49,6 +49,8 @@ _WORD = re.compile(r"\w+")
 _CLASS = re.compile(r"type(\[.*\])?")  # of what takes a class itself
 _DECLARING = "bpy.props."  # has a rule of its own
 _IN_C = ("bmesh.", "mathutils.", "gpu.", "imbuf.", T)
+# Where a number or a text is one: functions in C.
+_CONVERT_NOTHING = ("aud.", "bl_math.", "blf.", "bmesh.", "bpy.utils.units.", "gpu.", "imbuf.", "mathutils.")
 _ANYTHING = frozenset({f"{T}AnyType", f"{T}Property", f"{T}Struct"})
 _NUMBERS = frozenset({"bool", "int", "float"})
 _TRUTH = frozenset({"bool", "int"})
@@ -135,10 +137,24 @@ def _plain_misfit(taker: Taker, kind: Type) -> Misfit | None:
     is_member = not taker.is_parameter and path.startswith(_BMESH_TYPES)
     strict = _STRICT if is_member or path.startswith(_BMESH_OPERATORS) else _DOCUMENTED
     fits = strict.get(documented)
-    if fits is None or not isinstance(kind, Plain) or kind.kind in fits:
+    if documented.startswith("dict["):
+        return Misfit("a dict", describe(kind)) if isinstance(kind, (Plain, Tuple, Sequence)) else None
+    if fits is None or not (
+        _is_other(kind, fits) or (_holds_several(kind) and path.startswith(_CONVERT_NOTHING))
+    ):
         return None
     takes = _WORDS.get(documented, "") if strict is _STRICT else ""
     return Misfit(takes or ("a str" if "str" in fits else "a number"), describe(kind))
+
+
+def _is_other(kind: Type, fits: frozenset[str]) -> bool:
+    return isinstance(kind, Plain) and kind.kind not in fits
+
+
+def _holds_several(kind: Type) -> bool:
+    """Whether a value surely is no number and no text: it holds several, as a vector does."""
+    is_math = isinstance(kind, Instance) and kind.sure and kind.cls.startswith(_MATHUTILS)
+    return is_math or isinstance(kind, (Tuple, Sequence, Mapping))
 
 
 def _class_misfit(script: Script, taker: Taker, node: ast.expr, kind: Type) -> Misfit | None:

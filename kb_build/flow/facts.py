@@ -4,6 +4,14 @@ from __future__ import annotations
 
 from kb_build.symbols.api_names import TYPES as T
 
+# What looks like modules and is tuples whose items have names, and what those have besides.
+STRUCT_SEQUENCES = frozenset(
+    {
+        "bpy.app", "bpy.app.alembic", "bpy.app.build_options", "bpy.app.ffmpeg", "bpy.app.handlers", "bpy.app.ocio",
+        "bpy.app.oiio", "bpy.app.opensubdiv", "bpy.app.openvdb", "bpy.app.sdl", "bpy.app.usd",
+    }
+)  # fmt: skip
+OF_STRUCT_SEQUENCES = frozenset({"count", "index", "n_fields", "n_sequence_fields", "n_unnamed_fields"})
 VERSION = "bpy.app.version"  # what tells it is read from this, or from what begins like it
 
 # Operators that make an object and leave it as the active one: how their paths begin or are → the object's type.

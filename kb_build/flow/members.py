@@ -17,7 +17,9 @@ from kb_build.flow.facts import (
     NODES_THAT_KEEP_NAMES,
     NODES_WITH_SOCKETS_OF_THEIR_OWN,
     OF_OPERATOR,
+    OF_STRUCT_SEQUENCES,
     OPEN_CLASSES,
+    STRUCT_SEQUENCES,
     VERSION,
 )
 from kb_build.flow.type_parts import unsure
@@ -257,7 +259,8 @@ class Members(Core):
             if kind.path == "bpy.types" and (own := self.own_types.get(name)):
                 found.types.append(own)
                 return
-            known = nested is not None or name.startswith("_") or path in self.own_operators
+            is_of_tuple = kind.path in STRUCT_SEQUENCES and name in OF_STRUCT_SEQUENCES
+            known = nested is not None or name.startswith("_") or path in self.own_operators or is_of_tuple
             if not known and not _half_known(kind.path) and not self.is_there_at_times(path):
                 found.missing.append(kind.path)
                 found.types.append(self.api.successor_type(kind.path, name))

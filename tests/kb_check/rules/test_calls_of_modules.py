@@ -18,7 +18,10 @@ if TYPE_CHECKING:
 
     from kb_check.checker import Checker
 
-_RULES = ["list-attribute", "missing-argument", "not-subscriptable", "wrong-size", "wrong-type"]
+_RULES = [
+    "given-callback", "list-attribute", "missing-argument", "not-subscriptable", "unknown-name", "unknown-value",
+    "wrong-size", "wrong-type",
+]  # fmt: skip
 _LINES = """\
 import addon_utils, bl_math, bmesh, bpy, math
 from bpy_extras import anim_utils, io_utils
@@ -74,6 +77,33 @@ face[number] = 1
 vert[number]
 vert[weights]
 face[weights]
+bmesh.ops.bevel(bm, geom=bm.edges[:], offset=(1, 2), segments=1, affect="EDGES")
+bmesh.ops.subdivide_edges(bm, edges=bm.edges[:], cuts=1, edge_percents="none")
+bmesh.ops.weld_verts(bm, targetmap=[])
+bmesh.ops.create_cube(bm, calc_uvs=(1, 2))
+Matrix.Scale((1, 2, 3), 4)
+Matrix.Scale(Vector((1, 2, 3)), 4)
+Matrix.Scale(2, (4,))
+Matrix.Scale(2, 4)
+Matrix.Rotation((1, 2, 3), 4, "X")
+Matrix.Rotation(cube.rotation_euler, 4, "X")
+Matrix.Rotation(cube.rotation_euler.x, 4, "X")
+Vector((1, 2, 3)).lerp((4, 5, 6), (0.5,))
+bl_math.lerp((0, 0), 1, 0.5)
+bl_math.lerp(0, 1, 0.5)
+geometry.interpolate_bezier((0, 0), (1, 0), (1, 1), (0, 1), [4])
+face.material_index = (1, 2)
+bpy.utils.units.to_value("LENGTH", "METRIC", "3mm")
+bpy.utils.units.to_value("METRIC", "LENGHT", "3mm")
+bpy.utils.units.to_value("METRIC", "LENGTH", ("3mm",))
+bpy.utils.units.to_value("METRIC", "LENGTH", "3mm")
+bpy.utils.units.to_string("LENGTH", "METRIC", 3.0)
+bpy.utils.units.to_string("METRIC", "LENGTH", (3.0,))
+bpy.utils.units.to_string(scene.unit_settings.system, "LENGTH", 3.0)
+bpy.app.handlers.persistent()
+bpy.app.handlers.persistent(lambda path: path)
+bpy.app.handlers.count(None), bpy.app.handlers.index, bpy.app.handlers.n_fields, bpy.app.ffmpeg.count
+bpy.app.handlers.counts
 """
 
 
@@ -81,8 +111,33 @@ def test_what_is_found_is_what_blender_refuses(rule_checker: Checker, tmp_path: 
     lines: list[str] = [*_LINES.splitlines()]
     refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
     found = rule_checker.check(_LINES, rules=_RULES)
-    assert [one.span.line for one in found] == refused
-    assert len(refused) == 22
+    assert sorted({one.span.line for one in found}) == refused
+    assert len(refused) == 42
+
+
+def test_what_is_told_of_changes_is_a_function_in_python(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = [*_CALLBACKS, *(_SUBSCRIBED.format(given) for given in _GIVEN)]
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
+    found = rule_checker.check("\n".join(lines), rules=["given-callback"])
+    first = len("\n".join(_CALLBACKS).splitlines()) - len(_CALLBACKS)
+    assert [one.span.line - first for one in found] == refused
+    assert len(refused) == 13
+
+
+_CALLBACKS = [
+    "import bpy, functools",
+    "from functools import partial",
+    "class Seen:\n    def notify(self): pass\n    @classmethod\n    def own(cls): pass",
+    "seen = Seen()",
+    "def called(*more): pass",
+    "@functools.wraps(called)\ndef wrapped(): pass",
+]
+_SUBSCRIBED = "bpy.msgbus.subscribe_rna(key=bpy.context.object, owner=seen, args=(), notify={})"
+_GIVEN = (
+    "called", "lambda *more: None", "called()", "None", "'called'", "seen.notify", "Seen.notify", "Seen.own", "Seen",
+    "seen", "print", "functools.partial(called, 1)", "partial(called)", "bpy.ops.mesh.delete", "bpy.types.Object",
+    "bpy.context.object.select_set", "bpy.utils.keyconfig_set", "wrapped",
+)  # fmt: skip
 
 
 _NEEDED = """
