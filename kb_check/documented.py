@@ -139,22 +139,18 @@ def _plain_misfit(taker: Taker, kind: Type) -> Misfit | None:
     fits = strict.get(documented)
     if documented.startswith("dict["):
         return Misfit("a dict", describe(kind)) if isinstance(kind, (Plain, Tuple, Sequence)) else None
-    if fits is None or not (
-        _is_other(kind, fits) or (_holds_several(kind) and path.startswith(_CONVERT_NOTHING))
-    ):
+    if fits is None or not _is_no_such(kind, fits, path):
         return None
     takes = _WORDS.get(documented, "") if strict is _STRICT else ""
     return Misfit(takes or ("a str" if "str" in fits else "a number"), describe(kind))
 
 
-def _is_other(kind: Type, fits: frozenset[str]) -> bool:
-    return isinstance(kind, Plain) and kind.kind not in fits
-
-
-def _holds_several(kind: Type) -> bool:
-    """Whether a value surely is no number and no text: it holds several, as a vector does."""
+def _is_no_such(kind: Type, fits: frozenset[str], path: str) -> bool:
+    """Whether a value surely is no number, or text, of some kinds: it is of another kind, or holds several of any."""
+    if isinstance(kind, Plain):
+        return kind.kind not in fits
     is_math = isinstance(kind, Instance) and kind.sure and kind.cls.startswith(_MATHUTILS)
-    return is_math or isinstance(kind, (Tuple, Sequence, Mapping))
+    return path.startswith(_CONVERT_NOTHING) and (is_math or isinstance(kind, (Tuple, Sequence, Mapping)))
 
 
 def _class_misfit(script: Script, taker: Taker, node: ast.expr, kind: Type) -> Misfit | None:
