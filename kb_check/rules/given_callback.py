@@ -36,6 +36,7 @@ from kb_build.flow.types import (
     Builtin,
     ClassObject,
     Function,
+    Instance,
     LocalClass,
     LocalFunction,
     LocalInstance,
@@ -81,7 +82,8 @@ _PARTIAL = frozenset({"functools.partial", "partial"})
 def _check(script: Script) -> Iterator[Finding]:
     for call in calls(script):
         path = call.callee.symbol.path
-        if path == _PERSISTENT_PATH and not call.node.args and not is_tried(script, call.node):
+        is_empty = not (call.node.args or call.node.keywords)
+        if path == _PERSISTENT_PATH and is_empty and not is_tried(script, call.node):
             told = f"`{path}` is the decorator itself, and is not called: `@{_PERSISTENT}`."
             yield Finding(
                 RULE.id, "error", script.span(call.node), told, path, (), _without_call(script, call.node)
@@ -95,6 +97,7 @@ def _check(script: Script) -> Iterator[Finding]:
                 yield Finding(
                     RULE.id, "error", script.span(node),
                     f"`{path}` takes for `{parameter.name}` a function in Python or a `lambda`, not {given}.", path,
+                    (), _uncalled(script, node),
                 )  # fmt: skip
     for node in script.all(ast.Call):
         match node:
@@ -130,17 +133,18 @@ def _other(script: Script, node: ast.expr) -> str:
     if isinstance(source, ast.Call) and ast.unparse(source.func) in _PARTIAL:
         return "a `functools.partial`" if script.type_of(source.func) == UNKNOWN else ""
     if _gives_none(script, node):
-        return "what a function returns that returns nothing"
+        return "None"
     found = {_in_words(kind) for kind in members(script.type_of(node) or UNKNOWN)}
     return "" if "" in found else " or ".join(sorted(found))
 
 
 def _in_words(kind: Type) -> str:
     """What a type is, if not one of functions in Python; empty for those, and for what may be one."""
-    is_function = isinstance(kind, LocalFunction) and kind.receiver is None
-    if is_function or (isinstance(kind, Function) and isinstance(kind.receiver, Module)):
-        return ""
-    return _OTHERS.get(type(kind)) or describe(kind)
+    match kind:
+        case LocalFunction(receiver=None) | Function(receiver=Module()) | Instance(sure=False):
+            return ""
+        case _:
+            return _OTHERS.get(type(kind)) or describe(kind)
 
 
 def _refused(function: ast.AST, counts: tuple[int, ...]) -> str:

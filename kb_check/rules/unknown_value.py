@@ -72,11 +72,11 @@ def _check(script: Script) -> Iterator[Finding]:
     yield from _asked(script)
     yield from _of_trees(script)
     yield from _of_icons(script)
-    yield from _of_modules(script)
+    yield from _of_units(script)
 
 
-def _of_modules(script: Script) -> Iterator[Finding]:
-    """Texts given to functions that take one of those which a module has."""
+def _of_units(script: Script) -> Iterator[Finding]:
+    """Systems and categories of units, by names that the modules of units do not have."""
     for call in calls_not_ready_for(script, REFUSES):
         for parameter, given in call.arguments():
             module = _NAMED_IN.get(parameter.name, "") if call.callee.symbol.owner == _UNITS else ""
