@@ -127,7 +127,10 @@ def test_what_is_told_of_changes_is_a_function_in_python(rule_checker: Checker, 
 def test_what_is_called_by_mistake_is_given_by_the_fix(rule_checker: Checker) -> None:
     code = "import bpy\ndef called(): pass\n@bpy.app.handlers.persistent()\ndef loaded(path): pass\n"
     found = rule_checker.check(code + _SUBSCRIBED.format("called()"), rules=["given-callback"])
-    assert [[edit.text for edit in one.fix.edits] for one in found if one.fix and one.fix.sure] == [[""], [""]]
+    assert [[edit.text for edit in one.fix.edits] for one in found if one.fix and one.fix.sure] == [
+        [""],
+        [""],
+    ]
 
 
 _CALLBACKS = [
