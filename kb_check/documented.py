@@ -26,7 +26,7 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import last_name
 from kb_check.calls import calls_by_node
 from kb_check.literals import items, written
-from kb_check.made_here import bindings
+from kb_check.made_here import bindings, once_bound
 from kb_check.misfits import Misfit, describe, shown
 
 if TYPE_CHECKING:
@@ -49,6 +49,8 @@ _WORD = re.compile(r"\w+")
 _CLASS = re.compile(r"type(\[.*\])?")  # of what takes a class itself
 _DECLARING = "bpy.props."  # has a rule of its own
 _IN_C = ("bmesh.", "mathutils.", "gpu.", "imbuf.", T)
+# Where a number or a text is one: functions in C.
+_CONVERT_NOTHING = ("aud.", "bl_math.", "blf.", "bmesh.", "bpy.utils.units.", "gpu.", "imbuf.", "mathutils.")
 _ANYTHING = frozenset({f"{T}AnyType", f"{T}Property", f"{T}Struct"})
 _NUMBERS = frozenset({"bool", "int", "float"})
 _TRUTH = frozenset({"bool", "int"})
@@ -135,10 +137,20 @@ def _plain_misfit(taker: Taker, kind: Type) -> Misfit | None:
     is_member = not taker.is_parameter and path.startswith(_BMESH_TYPES)
     strict = _STRICT if is_member or path.startswith(_BMESH_OPERATORS) else _DOCUMENTED
     fits = strict.get(documented)
-    if fits is None or not isinstance(kind, Plain) or kind.kind in fits:
+    if documented.startswith("dict["):
+        return Misfit("a dict", describe(kind)) if isinstance(kind, (Plain, Tuple, Sequence)) else None
+    if fits is None or not _is_no_such(kind, fits, path):
         return None
     takes = _WORDS.get(documented, "") if strict is _STRICT else ""
     return Misfit(takes or ("a str" if "str" in fits else "a number"), describe(kind))
+
+
+def _is_no_such(kind: Type, fits: frozenset[str], path: str) -> bool:
+    """Whether a value surely is no number, or text, of some kinds: it is of another kind, or holds several of any."""
+    if isinstance(kind, Plain):
+        return kind.kind not in fits
+    is_math = isinstance(kind, Instance) and kind.sure and kind.cls.startswith(_MATHUTILS)
+    return path.startswith(_CONVERT_NOTHING) and (is_math or isinstance(kind, (Tuple, Sequence, Mapping)))
 
 
 def _class_misfit(script: Script, taker: Taker, node: ast.expr, kind: Type) -> Misfit | None:
@@ -181,21 +193,15 @@ def _holding(kinds: tuple[Type, ...]) -> str:
 
 def _is_extruded(script: Script, node: ast.expr) -> bool:
     """Whether a value is what extruding faces gave, whole: vertices, edges and faces in one list."""
-    match _once_bound(script, node):
+    match once_bound(script, node):
         case ast.Subscript(value=result, slice=ast.Constant(value="geom")):
-            made = _once_bound(script, result)
+            made = once_bound(script, result)
         case _:
             return False
     call = calls_by_node(script).get(made) if isinstance(made, ast.Call) else None
     given = call.argument("geom") if call and call.callee.symbol.path == _EXTRUDING else None
     kind = script.type_of(given) if given else None
     return kind is not None and _element(kind) == Instance(_FACE)
-
-
-def _once_bound(script: Script, node: ast.expr) -> ast.expr:
-    """The one value that a name has, or else the expression itself."""
-    values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else []
-    return values[0] if len(values) == 1 and values[0] else node
 
 
 def _takes(classes: tuple[str, ...], is_many: bool) -> str:

@@ -135,6 +135,12 @@ def words_of(nodes: Iterable[ast.AST]) -> frozenset[str]:
 
 
 @once_per_script
+def words_in_texts(script: Script) -> frozenset[str]:
+    """The words of the script's texts: it may ask for an attribute by one."""
+    return words_of(script.all(ast.Constant))
+
+
+@once_per_script
 def computes_names(script: Script) -> bool:
     """Whether something out of sight may set settings: computed names, or the files beside the script."""
     is_computed = not computing(script).isdisjoint(RUNNING | STORING)
@@ -276,6 +282,12 @@ def bindings(script: Script) -> dict[str, list[ast.expr | None]]:
         if isinstance(node.ctx, ast.Store) and node not in assigned:
             found.setdefault(node.id, []).append(None)
     return found
+
+
+def once_bound(script: Script, node: ast.expr) -> ast.expr:
+    """The one value that a name has, or else the expression itself."""
+    values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else []
+    return values[0] if len(values) == 1 and values[0] else node
 
 
 @once_per_script

@@ -27,6 +27,9 @@ _OF_CALLS = {
     "mathutils.Matrix.Translation": (4, 4), "mathutils.Matrix.LocRotScale": (4, 4),
     "mathutils.Matrix.to_translation": (3,), "mathutils.Matrix.to_scale": (3,),
     "mathutils.Vector.to_2d": (2,), "mathutils.Vector.to_3d": (3,), "mathutils.Vector.to_4d": (4,),
+    "bpy_extras.object_utils.world_to_camera_view": (3,),
+    "bpy_extras.view3d_utils.region_2d_to_location_3d": (3,), "bpy_extras.view3d_utils.region_2d_to_origin_3d": (3,),
+    "bpy_extras.view3d_utils.region_2d_to_vector_3d": (3,),
 }  # fmt: skip
 # What is told the number of rows and columns, and which argument that is.
 SIZED = {

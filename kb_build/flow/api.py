@@ -14,6 +14,7 @@ from kb_build.flow.facts import (
     ELEMENTS,
     LAYER_ITEM,
     LAYERS,
+    LAYERS_OF,
     NARROWER,
     OF_OPERATOR,
     OPERATOR_PROPERTIES,
@@ -337,6 +338,8 @@ class Api:
                 return receiver
             if kind.cls == LAYER_ITEM and receiver.traits:
                 return replace(kind, traits=receiver.traits)
+            if kind.cls == LAYERS:
+                kind = replace(kind, traits=(*kind.traits, (LAYERS_OF, receiver)))
         return kind
 
     def _of_collection(self, kind: Type, receiver: Collection, name: str) -> Type:
@@ -489,7 +492,7 @@ class Api:
     def element(self, kind: Instance) -> Type:
         """What an instance holds, when it is indexed or looped over."""
         if held := kind.trait(ELEMENT):
-            return Instance(LAYER_ITEM, ((ELEMENT, held),)) if kind.cls == LAYERS else held
+            return replace(kind, cls=LAYER_ITEM) if kind.cls == LAYERS else held
         if names := ELEMENTS.get(kind.cls):
             return union(Instance(name) for name in names)
         return UNKNOWN

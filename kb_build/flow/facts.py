@@ -4,6 +4,14 @@ from __future__ import annotations
 
 from kb_build.symbols.api_names import TYPES as T
 
+# What looks like modules and is tuples whose items have names, and what those have besides.
+STRUCT_SEQUENCES = frozenset(
+    {
+        "bpy.app", "bpy.app.alembic", "bpy.app.build_options", "bpy.app.ffmpeg", "bpy.app.handlers", "bpy.app.ocio",
+        "bpy.app.oiio", "bpy.app.opensubdiv", "bpy.app.openvdb", "bpy.app.sdl", "bpy.app.usd",
+    }
+)  # fmt: skip
+OF_STRUCT_SEQUENCES = frozenset({"count", "index", "n_fields", "n_sequence_fields", "n_unnamed_fields"})
 VERSION = "bpy.app.version"  # what tells it is read from this, or from what begins like it
 
 # Operators that make an object and leave it as the active one: how their paths begin or are → the object's type.
@@ -183,6 +191,8 @@ SET_ACTIVE = f"{T}LayerObjects.active"
 LAYER_ITEM = "bmesh.types.BMLayerItem"
 LAYERS = "bmesh.types.BMLayerCollection"
 ELEMENT = "[]"  # the trait that names what an instance holds
+LAYERS_OF = "of"  # the trait of layers, and of one of them, that names what they were read from
+LAYER_ACCESS = "bmesh.types.BMLayerAccess"  # how the classes of that begin, which end with an element's name
 
 
 def made_by(operator: str) -> str:

@@ -11,12 +11,15 @@ from kb_build.flow.api import ARRAY
 from kb_build.flow.core import ANY, Core
 from kb_build.flow.facts import (
     DERIVED_BY_SCRIPTS,
+    ELEMENT,
     HALF_KNOWN,
     LAYER_ITEM,
     NODES_THAT_KEEP_NAMES,
     NODES_WITH_SOCKETS_OF_THEIR_OWN,
     OF_OPERATOR,
+    OF_STRUCT_SEQUENCES,
     OPEN_CLASSES,
+    STRUCT_SEQUENCES,
     VERSION,
 )
 from kb_build.flow.type_parts import unsure
@@ -256,7 +259,8 @@ class Members(Core):
             if kind.path == "bpy.types" and (own := self.own_types.get(name)):
                 found.types.append(own)
                 return
-            known = nested is not None or name.startswith("_") or path in self.own_operators
+            is_of_tuple = kind.path in STRUCT_SEQUENCES and name in OF_STRUCT_SEQUENCES
+            known = nested is not None or name.startswith("_") or path in self.own_operators or is_of_tuple
             if not known and not _half_known(kind.path) and not self.is_there_at_times(path):
                 found.missing.append(kind.path)
                 found.types.append(self.api.successor_type(kind.path, name))
@@ -406,8 +410,8 @@ class Members(Core):
         if kind.cls == "mathutils.Matrix":
             return Instance("mathutils.Vector")
         key = without_none(key)
-        if isinstance(key, Instance) and key.cls == LAYER_ITEM and key.traits:
-            return key.traits[0][1]
+        if isinstance(key, Instance) and key.cls == LAYER_ITEM and (held := key.trait(ELEMENT)):
+            return held
         return self.api.element(kind)
 
     def collection_item(self, kind: Collection, key: Type, node: ast.AST) -> Type:

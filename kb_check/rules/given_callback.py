@@ -11,10 +11,16 @@ def follow():
 
 bpy.app.timers.register(tick())  # reported: bpy.app.timers.register(tick)
 bpy.app.handlers.frame_change_post.append(follow)  # reported: def follow(scene, depsgraph)
+
+
+@bpy.app.handlers.persistent()  # reported: @bpy.app.handlers.persistent
+def loaded(path):
+    pass
 ```
 
-Blender calls a handler with two arguments, or with one if it has one; a timer with none. Not reported: functions that
-the script does not define itself, methods, and what decorators may have changed.
+Blender calls a handler with two arguments, or with one if it has one; a timer with none. `bpy.msgbus` takes nothing but
+functions in Python and lambdas: no method, no class, no `functools.partial`. Not reported: how many arguments are taken
+by functions that the script does not define itself, by methods, and by what decorators may have changed.
 """
 
 from __future__ import annotations
@@ -24,11 +30,31 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import walk
-from kb_build.flow.types import NONE, LocalFunction, Plain, Sequence, Tuple, Type, members
+from kb_build.flow.types import (
+    NONE,
+    UNKNOWN,
+    Builtin,
+    ClassObject,
+    Function,
+    Instance,
+    LocalClass,
+    LocalFunction,
+    LocalInstance,
+    Module,
+    NoneValue,
+    Operator,
+    Plain,
+    Sequence,
+    Tuple,
+    Type,
+    members,
+)
 from kb_build.index.analysis import split_arguments
 from kb_check.calls import calls
 from kb_check.findings import Edit, Finding, Fix, Span
-from kb_check.handler_lists import handler_list
+from kb_check.handler_lists import HANDLERS, handler_list
+from kb_check.made_here import once_bound
+from kb_check.misfits import describe
 from kb_check.rule import Rule
 from kb_check.tried import is_tried
 
@@ -43,16 +69,36 @@ _CALLABLE = re.compile(r"Callable\[\[(.*)\], [^\]]*\](?: \| None)?")
 _DECLARING = "bpy.props."  # has a rule of its own
 _OF_HANDLERS = (1, 2)
 _PERSISTENT = "persistent"
+_PERSISTENT_PATH = f"{HANDLERS}{_PERSISTENT}"
+# Parameters that take only functions in Python, and lambdas.
+_FUNCTIONS_ONLY = frozenset({"bpy.msgbus.subscribe_rna(notify)"})
+_OTHERS: dict[type[Type], str] = {
+    Builtin: "a function in C", ClassObject: "a class", Function: "a method", LocalClass: "a class",
+    LocalFunction: "a method", LocalInstance: "an instance of a class", NoneValue: "None", Operator: "an operator",
+}  # fmt: skip
+_PARTIAL = frozenset({"functools.partial", "partial"})
 
 
 def _check(script: Script) -> Iterator[Finding]:
     for call in calls(script):
         path = call.callee.symbol.path
+        is_empty = not (call.node.args or call.node.keywords)
+        if path == _PERSISTENT_PATH and is_empty and not is_tried(script, call.node):
+            told = f"`{path}` is the decorator itself, and is not called: `@{_PERSISTENT}`."
+            yield Finding(
+                RULE.id, "error", script.span(call.node), told, path, (), _without_call(script, call.node)
+            )
         for parameter, node in () if path.startswith(_DECLARING) else call.arguments():
             form = _CALLABLE.fullmatch(parameter.type)
             if form:
                 count = len([*split_arguments(form[1])])
                 yield from _judged(script, node, path, (count,), may_be_none=parameter.type.endswith("None"))
+            elif f"{path}({parameter.name})" in _FUNCTIONS_ONLY and (given := _other(script, node)):
+                yield Finding(
+                    RULE.id, "error", script.span(node),
+                    f"`{path}` takes for `{parameter.name}` a function in Python or a `lambda`, not {given}.", path,
+                    (), _uncalled(script, node),
+                )  # fmt: skip
     for node in script.all(ast.Call):
         match node:
             case ast.Call(func=ast.Attribute(value=handlers, attr=name), args=[*_, given]) if name in _ADDING:
@@ -77,6 +123,28 @@ def _judged(
         fix = _uncalled(script, node)
         told = "a function, not what it returns" if isinstance(node, ast.Call) else "a function"
         yield Finding(RULE.id, "error", script.span(node), f"`{path}` takes {told}.", path, (), fix)
+
+
+def _other(script: Script, node: ast.expr) -> str:
+    """What a value is in words, where it surely is no function in Python; empty where it may be one."""
+    if is_tried(script, node):
+        return ""
+    source = once_bound(script, node)
+    if isinstance(source, ast.Call) and ast.unparse(source.func) in _PARTIAL:
+        return "a `functools.partial`" if script.type_of(source.func) == UNKNOWN else ""
+    if _gives_none(script, node):
+        return "None"
+    found = {_in_words(kind) for kind in members(script.type_of(node) or UNKNOWN)}
+    return "" if "" in found else " or ".join(sorted(found))
+
+
+def _in_words(kind: Type) -> str:
+    """What a type is, if not one of functions in Python; empty for those, and for what may be one."""
+    match kind:
+        case LocalFunction(receiver=None) | Function(receiver=Module()) | Instance(sure=False):
+            return ""
+        case _:
+            return _OTHERS.get(type(kind)) or describe(kind)
 
 
 def _refused(function: ast.AST, counts: tuple[int, ...]) -> str:
@@ -119,12 +187,14 @@ def _uncalled(script: Script, node: ast.expr) -> Fix | None:
     """``register(tick())`` → ``register(tick)``."""
     match node:
         case ast.Call(func=ast.Name() as function, args=[], keywords=[]):
-            pass
+            is_own = isinstance(script.type_of(function), LocalFunction)
+            return _without_call(script, node) if is_own else None
         case _:
             return None
-    if not isinstance(script.type_of(function), LocalFunction):
-        return None
-    called, whole = script.span(function), script.span(node)
+
+
+def _without_call(script: Script, call: ast.Call) -> Fix | None:
+    called, whole = script.span(call.func), script.span(call)
     behind = Span(called.end_line, called.end_column, whole.end_line, whole.end_column)
     return Fix("Give the function", (Edit(behind, ""),), sure=True) if script.text(behind) == "()" else None
 

@@ -1,12 +1,16 @@
-"""An attribute that a list does not have.
+"""An attribute that a list or a tuple does not have.
 
-Read from the list that a call returns, and meant for its items, or from a list of handlers, which has Python's methods.
+Read from several things together, and meant for one of them, or from a list of handlers, which has Python's methods.
 
 ```python
 obj.driver_add("location").driver  # reported: a list of three curves, for there is no index
 obj.driver_add("location", 0).driver
 bpy.app.handlers.load_post.add(follow)  # reported: append
+bpy.context.selected_objects.location  # reported: each of them has one
+quaternion.to_axis_angle().x  # reported: a tuple of the axis and the angle
 ```
+
+Not reported: what stands in a ``try`` that catches AttributeError, and names that the script asks for by a text.
 """
 
 from __future__ import annotations
@@ -14,11 +18,14 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Instance, Sequence
+from kb_build.flow.types import NONE, UNKNOWN, Instance, Sequence, Tuple, Type, members
 from kb_check.findings import Finding
 from kb_check.handler_lists import handler_list
-from kb_check.made_here import bindings, callee_path
+from kb_check.made_here import once_bound, words_in_texts
+from kb_check.misfits import describe
+from kb_check.raised import LACKS
 from kb_check.rule import Rule
+from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,6 +33,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _ADDING = "bpy.types.bpy_struct.driver_add"
+_LONGEST = 60  # expression that is shown
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -39,24 +47,42 @@ def _check(script: Script) -> Iterator[Finding]:
                 name,
             )  # fmt: skip
             continue
-        kind = script.type_of(node.value)
-        if (
-            isinstance(kind, Sequence)
-            and isinstance(kind.element, Instance)
-            and _is_added(script, node.value)
-        ):
-            yield Finding(
-                RULE.id, "error", script.name_span(node),
+        if (told := _told(script, node)) and not is_tried(script, node, LACKS):
+            yield Finding(RULE.id, "error", script.name_span(node), told)
+
+
+def _told(script: Script, node: ast.Attribute) -> str:
+    """What is wrong with reading an attribute of what the API gives; empty where it may be no list or tuple."""
+    source = once_bound(script, node.value)
+    row = script.analysis.resolutions.get(source)
+    kinds = [kind for kind in members(script.type_of(node.value) or UNKNOWN) if kind != NONE]
+    if row is None or not row.sure or row.guarded or row.possible or len(kinds) != 1:
+        return ""
+    if node.attr in words_in_texts(script):
+        return ""
+    match kinds[0]:
+        case Sequence(kind="list", element=Instance()) if row.value == _ADDING:
+            return (
                 "`driver_add` of a property with several values gives a list of curves, one for each: "
-                "give an index, `driver_add(path, index)`, or take one of the list.", _ADDING,
-            )  # fmt: skip
+                "give an index, `driver_add(path, index)`, or take one of the list."
+            )
+        case Sequence(kind="list" | "tuple" as several, element=element):
+            advice = _advice(script, element, node.attr)
+            return f"`{_short(source)}` is a {several}, which has no `{node.attr}`.{advice}"
+        case Tuple(items=items):
+            held = ", ".join(describe(item) or "something else" for item in items)
+            return f"`{_short(source)}` is a tuple, which has no `{node.attr}`. It holds {held}."
+        case _:
+            return ""
 
 
-def _is_added(script: Script, node: ast.expr) -> bool:
-    if isinstance(node, ast.Name):
-        values = bindings(script).get(node.id, [])
-        return len(values) == 1 and values[0] is not None and _is_added(script, values[0])
-    return isinstance(node, ast.Call) and callee_path(script, node) == _ADDING
+def _advice(script: Script, element: Type, name: str) -> str:
+    has_it = isinstance(element, Instance) and script.api.member(element.cls, name)
+    return " Its items do." if has_it else ""
 
 
-RULE = Rule("list-attribute", "error", "An attribute that a list does not have", _check)
+def _short(node: ast.expr) -> str:
+    return ast.unparse(node)[:_LONGEST]
+
+
+RULE = Rule("list-attribute", "error", "An attribute that a list or a tuple does not have", _check)

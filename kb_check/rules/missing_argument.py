@@ -31,6 +31,11 @@ if TYPE_CHECKING:
 _SEVERAL_SIGNATURES = ("aud.", "freestyle.", "bpy.props.")
 # What a signature has that tells apart which of its parameters are needed; references of older versions do not.
 _MARKS = ("/", "*", "=")
+# Modules written in Python, whose signatures are Python's own.
+IN_PYTHON = (
+    "addon_utils.", "bl_keymap_utils.", "bpy.path.", "bpy_extras.", "gpu_extras.", "nodeitems_utils.",
+    "rna_keymap_ui.", "rna_prop_ui.",
+)  # fmt: skip
 # Functions that need all that they take, which their signatures have no mark to say.
 _NEED_ALL = frozenset(
     {
@@ -45,6 +50,8 @@ _MAY_BE_LEFT_OUT = {
     "gpu.state.active_framebuffer_get": {"enable"},
     "mathutils.Matrix.Rotation": {"axis"}, "mathutils.Matrix.Scale": {"axis"}, "mathutils.Vector.Range": {"stop"},
 }  # fmt: skip
+# Functions that take only all of their arguments or the first: those that are needed with any other.
+_ALL_OR_FIRST = frozenset({"bl_math.clamp"})
 # Those that may be left out but for some values of another argument: (parameter, other, values).
 _NEEDED_WITH = {"mathutils.Matrix.Rotation": ("axis", "size", {3, 4})}
 
@@ -54,7 +61,12 @@ def _check(script: Script) -> Iterator[Finding]:
         callee = call.callee
         path = callee.symbol.path
         needs_all = path in _NEED_ALL
-        told = needs_all or callee.is_rna or any(mark in callee.symbol.signature for mark in _MARKS)
+        told = (
+            needs_all
+            or callee.is_rna
+            or path.startswith(IN_PYTHON)
+            or any(mark in callee.symbol.signature for mark in _MARKS)
+        )
         unreliable = path.startswith(_SEVERAL_SIGNATURES) or callee.is_open or not told
         if (callee.symbol.kind != "function" and not needs_all) or call.has_unpacking or unreliable:
             continue
@@ -75,7 +87,9 @@ def _check(script: Script) -> Iterator[Finding]:
 
 
 def _needed(script: Script, call: CallSite) -> set[str]:
-    """The arguments that a call needs for the value of another one, though others of its function's do not."""
+    """The arguments that a call needs for another one, or its value, though others of its function's do not."""
+    if call.callee.symbol.path in _ALL_OR_FIRST and len(call.given) > 1:
+        return {parameter.name for parameter in call.callee.parameters}
     name, other, values = _NEEDED_WITH.get(call.callee.symbol.path, ("", "", set[int]()))
     node = call.argument(other) if other else None
     return {name} if node is not None and number(script, node) in values else set()

@@ -10,6 +10,7 @@ bpy.data.objects[::2]  # reported: bpy.data.objects[:][::2]
 bpy.types["Object"]  # reported: getattr(bpy.types, "Object")
 bmesh.ops.extrude_face_region(bm, geom=faces)["verts"]  # reported: it gives `geom`
 mesh.vertices.add(1)[0]  # reported: it returns nothing
+vert[bm.loops.layers.uv.active]  # reported: a layer of loops
 Settings.__annotations__["count"][1]  # reported: .keywords, since 2.93
 ```
 
@@ -23,10 +24,11 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.api import ARRAY
-from kb_build.flow.facts import NODES_WITH_SOCKETS_OF_THEIR_OWN
+from kb_build.flow.facts import LAYER_ACCESS, LAYER_ITEM, LAYERS_OF, NODES_WITH_SOCKETS_OF_THEIR_OWN
 from kb_build.flow.trees import walk
 from kb_build.flow.types import (
     NONE,
+    UNKNOWN,
     Collection,
     Instance,
     Mapping,
@@ -38,6 +40,7 @@ from kb_build.flow.types import (
     Tuple,
     Type,
     members,
+    without_none,
 )
 from kb_build.symbols.api_names import GROUPS, SIDES, STRUCT
 from kb_build.symbols.api_names import TYPES as T
@@ -64,8 +67,9 @@ _NO_CUSTOM_PROPERTIES = frozenset(
     {"bpy.types.Context", "bpy.types.BlendData", "bpy.types.RenderSettings", "bpy.types.MeshVertex"}
 )
 _DECLARATIONS_SINCE = 2, 93
-_BMESH = "bmesh.ops."
+_BMESH, _ELEMENT = "bmesh.ops.", "bmesh.types.BM"
 _FILLING = frozenset({"update", "setdefault"})
+_ELEMENTS = frozenset({"Vert", "Edge", "Face", "Loop"})
 _PARTS = {"verts": "BMVert", "edges": "BMEdge", "faces": "BMFace"}
 # What the classes of collections have, which annotations name: ``nodes: bpy.types.Nodes``.
 _OF_COLLECTIONS = frozenset(
@@ -260,6 +264,8 @@ def _of_instance(  # noqa: PLR0911 - one return a class
         if isinstance(index, int) and length and not -length <= index < length:
             return f"{_subject(script, node)} has {length} items: there is no item {index}."
         return ""
+    if cls.startswith(_ELEMENT):
+        return _of_layer(script, node, cls, key)
     if not cls.startswith(T) or cls.startswith(f"{T}bpy_") or not script.api.is_class(cls):
         return ""
     if _is_open(script, cls):
@@ -271,6 +277,25 @@ def _of_instance(  # noqa: PLR0911 - one return a class
     if cls in _NO_CUSTOM_PROPERTIES and _is_text(key):
         return f"An instance of `{cls}` has no custom properties: its members are attributes."
     return ""
+
+
+def _of_layer(script: Script, node: ast.Subscript, cls: str, key: Type | None) -> str:
+    """What is wrong with asking an element of a BMesh for its value in a layer: it is one of other elements."""
+    layer = without_none(key or UNKNOWN)
+    of = (
+        layer.trait(LAYERS_OF)
+        if isinstance(layer, Instance) and layer.cls == LAYER_ITEM and layer.sure
+        else None
+    )
+    name = of.cls.removeprefix(LAYER_ACCESS) if isinstance(of, Instance) else ""
+    element = cls.removeprefix(_ELEMENT)
+    if not name or element not in _ELEMENTS or name == element:
+        return ""
+    many = f"{name.lower()}s"
+    names = (many, f"link_{many}", name.lower())
+    own = next((own for own in names if script.api.member(cls, own)), "")
+    advice = f" Ask its `{own}`." if own else ""
+    return f"`{ast.unparse(node.slice)}` is a layer of {many}: `{cls}` has no value in it.{advice}"
 
 
 def _is_open(script: Script, cls: str) -> bool:

@@ -35,11 +35,10 @@ from kb_build.symbols.records import SCALAR_TYPES
 from kb_check.annotated_parameters import ONE_IS_WRONG, is_annotated
 from kb_check.calls import nothing_from, other_way
 from kb_check.findings import Finding, Fix
-from kb_check.made_here import bindings, callee_path, member_path, words_of
+from kb_check.made_here import bindings, callee_path, member_path, words_in_texts
 from kb_check.raised import LACKS
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
-from kb_check.script import once_per_script
 from kb_check.shown_sockets import socket_classes
 from kb_check.tried import is_tried
 from kb_serve.recognise.names.elements import Elsewhere, elsewhere
@@ -156,7 +155,7 @@ def _of_libraries(script: Script) -> Iterator[Finding]:
         if isinstance(part.value, ast.Name) and part.value.id in names and script.names.had(_DATA, part.attr):
             if (
                 script.type_of(part.value) is None
-                or part.attr in _asked(script)
+                or part.attr in words_in_texts(script)
                 or is_tried(script, part, LACKS)
             ):
                 continue
@@ -194,7 +193,7 @@ def _of_python(script: Script) -> Iterator[Finding]:
             path = member_path(script, node.value) if isinstance(node.value, ast.Attribute) else ""
             kind = _scalar(script, path, node)
             told = f"`{path}` is one {kind}: it has no `{node.attr}`." if kind else ""
-        if told and not is_tried(script, node, LACKS) and node.attr not in _asked(script):
+        if told and not is_tried(script, node, LACKS) and node.attr not in words_in_texts(script):
             yield Finding(RULE.id, "error", script.name_span(node), told, path)
 
 
@@ -209,12 +208,6 @@ def _scalar(script: Script, path: str, node: ast.Attribute) -> str:
     }
     kind = kinds.pop()
     return "" if kinds or kind not in _PYTHONS or hasattr(_PYTHONS[kind], node.attr) else kind
-
-
-@once_per_script
-def _asked(script: Script) -> frozenset[str]:
-    """The words of the script's texts: it may ask for an attribute by one."""
-    return words_of(script.all(ast.Constant))
 
 
 def _is_let_pass(row: Resolution) -> bool:

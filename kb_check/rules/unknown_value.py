@@ -22,7 +22,7 @@ from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
 
 from kb_build.flow.expressions import constants
-from kb_build.flow.types import UNKNOWN, Resolution
+from kb_build.flow.types import UNKNOWN, Resolution, literal_text
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import NODE_FAMILIES, never_taken
 from kb_build.symbols.paths import argument_of, last_name, plain_path, split_path
@@ -32,7 +32,7 @@ from kb_check.given import assigned, class_values
 from kb_check.literals import written
 from kb_check.made_here import knows_all
 from kb_check.node_trees import is_refused_in, tree_of
-from kb_check.raised import REFUSES_ENUM
+from kb_check.raised import REFUSES, REFUSES_ENUM
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.script import once_per_script
@@ -46,6 +46,9 @@ if TYPE_CHECKING:
 # How the types of Blender's own trees are misspelt.
 _TREE = re.compile(r"(?i:(compositor|compositing|geometry|shader|texture)_?(node)?s?_?(group|tree)?)")
 _LAYOUT = f"{T}UILayout"
+# The arguments of what deals with units, and the modules that have their values.
+_UNITS = "bpy.utils.units"
+_NAMED_IN = {"unit_system": f"{_UNITS}.systems", "unit_category": f"{_UNITS}.categories"}
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -69,6 +72,26 @@ def _check(script: Script) -> Iterator[Finding]:
     yield from _asked(script)
     yield from _of_trees(script)
     yield from _of_icons(script)
+    yield from _of_units(script)
+
+
+def _of_units(script: Script) -> Iterator[Finding]:
+    """Systems and categories of units, by names that the modules of units do not have."""
+    for call in calls_not_ready_for(script, REFUSES):
+        for parameter, given in call.arguments():
+            module = _NAMED_IN.get(parameter.name, "") if call.callee.symbol.owner == _UNITS else ""
+            text = literal_text(script.type_of(given) or UNKNOWN)
+            values = script.names.reader.members(module) if text and module else ()
+            if text and values and text not in values:
+                path = f"{call.callee.symbol.path}({parameter.name})"
+                told = ", ".join(f"`{value}`" for value in sorted(values))
+                yield Finding(
+                    RULE.id,
+                    "error",
+                    script.span(given),
+                    f"`{path}` has no value {text!r}. It takes {told}.",
+                    path,
+                )
 
 
 def _computed(script: Script) -> Iterator[Finding]:

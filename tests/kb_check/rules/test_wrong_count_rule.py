@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from conftest import Check
 
 _CODE = """\
-import bpy, bmesh, mathutils
+import addon_utils, bpy, bmesh, mathutils
 from mathutils.bvhtree import BVHTree
 ob = bpy.data.objects["Cube"]
 scene = bpy.context.scene
@@ -48,6 +48,12 @@ first, second, third, fourth = scene.camera.data.view_frame(scene=scene)
 place, factor, more = mathutils.geometry.intersect_point_line(start, start, along)
 near, far, more = mathutils.geometry.intersect_line_line(start, along, along, (0, 1, 0))
 near, far = mathutils.geometry.intersect_line_line(start, along, (1, 0, 0), (0, 1, 0))
+default, loaded = addon_utils.enable("cycles")
+default, loaded = addon_utils.check("cycles")
+near, far = mathutils.noise.noise(start)
+near, far = mathutils.noise.cell_vector(start)[:2]
+near, *far = mathutils.geometry.area_tri(start, along, (1, 0, 0))
+found, size = ob.vertex_groups.new(name="g").add([0], 1, "ADD"), 1
 key, = bmesh.ops.create_vert(bm, co=start)
 faces, edges, verts = bmesh.ops.bevel(bm, geom=bm.edges[:], offset=0.1, segments=1)
 """

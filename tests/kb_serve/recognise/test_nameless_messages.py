@@ -117,6 +117,10 @@ ob.dimensions = 1
 bpy.ops.constraint.followpath_path_animate(constraint="Follow Path")
 scene.render.engine = "CYCLES"; bpy.ops.object.bake(type="COMBINED", pass_filter={"DIRECT", "COLOR"})
 ob.asset_mark(); marked()
+loops_layer_of_a_vertex()
+bpy.msgbus.subscribe_rna(key=ob, owner=ob, args=(), notify=ob.select_get)
+bpy.utils.units.to_string("LENGTH", "METRIC", 3)
+bpy.utils.units.to_value("METRIC", "LENGHT", "3mm")
 """.splitlines()
 _RUN = """
 import json, os, sys, tempfile
@@ -183,6 +187,11 @@ def cycle():
 
 def drawing():
     return bpy.data.grease_pencils.new("g").layers.new("l").frames.new(1).drawing
+
+def loops_layer_of_a_vertex():
+    bm = bmesh.new()
+    layer = bm.loops.layers.uv.new()
+    bm.verts.new()[layer]
 
 def marked():
     with bpy.context.temp_override(id=ob):

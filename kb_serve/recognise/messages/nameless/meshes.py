@@ -50,6 +50,13 @@ MESHES = (
         "There are fewer elements, `len(bm.verts)`, and they are counted from 0.",
     ),
     NamelessMessage(
+        ("Layer/Element type mismatch, expected ",),
+        ("bmesh.types.BMLayerItem", "bmesh.types.BMLayerAccessLoop"),
+        "A layer belongs to one kind of element: `bm.loops.layers.uv` to loops, so `loop[uv_layer].uv` for the loops "
+        "of a face (`face.loops`) or of a vertex (`vert.link_loops`). Layers of vertices are in `bm.verts.layers`, of "
+        "edges in `bm.edges.layers`, of faces in `bm.faces.layers`.",
+    ),
+    NamelessMessage(
         ("Key ", " is out of range"),
         (f"{T}GreasePencilDrawing.strokes", f"{T}GreasePencilDrawing.add_strokes"),
         "There are fewer strokes, or points in a stroke: `drawing.add_strokes([3])` adds a stroke of three points.",

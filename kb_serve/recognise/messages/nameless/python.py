@@ -27,6 +27,24 @@ PYTHON = (
         "`gpu.shader.create_from_info(info)`.",
     ),
     NamelessMessage(
+        ("notify expects a function, found ",),
+        ("bpy.msgbus.subscribe_rna",),
+        "`notify` takes nothing but a function in Python or a `lambda`: for a method, a `functools.partial` or a class "
+        "write `notify=lambda *args: self.changed(*args)`.",
+    ),
+    NamelessMessage(
+        ("Unknown unit system specified: ",),
+        ("bpy.utils.units.to_value", "bpy.utils.units.to_string", "bpy.utils.units.systems"),
+        "The unit system comes first, then the category: `to_value('METRIC', 'LENGTH', '3mm')`. Systems are 'NONE', "
+        "'METRIC' and 'IMPERIAL'.",
+    ),
+    NamelessMessage(
+        ("Unknown unit category specified: ",),
+        ("bpy.utils.units.categories", "bpy.utils.units.to_value", "bpy.utils.units.to_string"),
+        "The category comes second, behind the unit system: `to_value('METRIC', 'LENGTH', '3mm')`. The names of "
+        "`bpy.utils.units.categories` are all that there are.",
+    ),
+    NamelessMessage(
         ('bpy_struct[key]: key "Input_',),
         (f"{T}NodesModifier", f"{T}NodeTreeInterfaceSocket.identifier"),
         "Since 4.0 the inputs of a group are called `Socket_2` and so on, not `Input_2`: `item.identifier` of its "
