@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.symbols.records import Parameter
-    from kb_check.calls import CallSite
+    from kb_check.calls import Callee, CallSite
     from kb_check.script import Script
 
 _EXECUTION_CONTEXTS = frozenset(
@@ -71,8 +71,13 @@ def _check(script: Script) -> Iterator[Finding]:
     for call in calls(script):
         if call.callee.symbol.kind == "operator":
             yield from _of_operator(script, call)
-        elif call.callee.symbol.kind == "function" or call.callee.symbol.owner == "mathutils":
+        elif _takes_places(call.callee):
             yield from _of_function(script, call)
+
+
+def _takes_places(callee: Callee) -> bool:
+    """Whether it is a function, or a class of which it is known how it takes what is given."""
+    return callee.symbol.kind == "function" or callee.symbol.owner == "mathutils" or bool(callee.place_only)
 
 
 def _of_operator(script: Script, call: CallSite) -> Iterator[Finding]:
@@ -176,10 +181,10 @@ def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
     path = callee.symbol.path
     arguments = call.node.args
     named = next((keyword for keyword in call.node.keywords if keyword.arg in callee.place_only), None)
-    if named is not None and not path.startswith(_UNRELIABLE):
+    if named is not None:
         yield Finding(
             RULE.id, "error", script.span(named),
-            f"`{path}` takes no names, only places: `{callee.symbol.signature}`.", path,
+            f"`{path}` takes `{named.arg}` by place only: `{callee.symbol.signature}`.", path,
             (), _by_place(script, call),
         )  # fmt: skip
         return
