@@ -232,11 +232,13 @@ def _takes_other_things(script: Script, call: CallSite, parameter: Parameter, va
 
 
 def _by_place(script: Script, call: CallSite) -> Fix | None:
-    """The arguments without their names, where they stand in their places already."""
-    names = [keyword.arg for keyword in call.node.keywords]
-    if list(call.callee.positional[len(call.node.args) :][: len(names)]) != names:
+    """The arguments without the names that are not taken, where they stand in their places already."""
+    places = call.callee.place_only[len(call.node.args) :]
+    named = [keyword for keyword in call.node.keywords if keyword.arg in places]
+    in_places = [keyword.arg for keyword in named] == list(places[: len(named)])
+    if not in_places or named != call.node.keywords[: len(named)]:
         return None
-    edits = tuple(Edit(script.span(keyword), ast.unparse(keyword.value)) for keyword in call.node.keywords)
+    edits = tuple(Edit(script.span(keyword), ast.unparse(keyword.value)) for keyword in named)
     return Fix("Leave out the names", edits, sure=True)
 
 
