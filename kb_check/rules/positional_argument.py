@@ -3,7 +3,8 @@
 Functions of Blender's classes take by place only what they need; since 2.80 the rest is given by name. Operators take
 by place nothing but an execution context and whether to push an undo step; until 3.6 a dictionary before them set the
 context, since 4.0 that is ``with bpy.context.temp_override(...)``. The classes of mathutils take one sequence.
-Functions written in C often take no names: those of ``bmesh.utils``, and of vertices, edges and faces of a BMesh.
+Functions written in C often take no names, or none for what comes first: those of ``bmesh.utils``, and of vertices,
+edges and faces of a BMesh.
 
 ```python
 ob.shape_key_add("Smile")  # reported
@@ -15,6 +16,7 @@ bpy.ops.mesh.primitive_cube_add(
 )  # reported: Blender takes the number for a truth value, and makes the usual cube
 bpy.ops.mesh.primitive_cube_add(size=4)
 vert.select_set(select=True)  # reported: vert.select_set(True)
+bm.verts.new(co=(0, 0, 1))  # reported: bm.verts.new((0, 0, 1))
 Vector(0, 0, 1)  # reported
 Vector((0, 0, 1))
 ```
