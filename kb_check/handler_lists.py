@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.api_names import HANDLERS
 from kb_check.made_here import alias
 
 if TYPE_CHECKING:
     import ast
 
     from kb_check.script import Script
-
-HANDLERS = "bpy.app.handlers."
 
 
 def handler_list(script: Script, node: ast.expr) -> str:

@@ -85,6 +85,7 @@ RULES = (
         (
             "kb_build.symbols.api_names",
             "kb_build.flow",
+            "kb_build.symbols.handlers",
             "kb_build.symbols.python_values",
             "kb_build.symbols.object_data",
             "kb_build.symbols.paths",
@@ -99,6 +100,7 @@ RULES = (
         ),
     ),
     Rule("kb_build.symbols.api_names", ("kb_build", "kb_check")),
+    Rule("kb_build.symbols.handlers", ("kb_build", "kb_check")),
     Rule("kb_build.symbols.paths", ("kb_build", "kb_check")),
     Rule("kb_build.symbols.taken", ("kb_build", "kb_check")),
     Rule("kb_build.symbols.needs", ("kb_build", "kb_check")),

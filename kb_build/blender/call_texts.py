@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import split_arguments
@@ -80,6 +81,12 @@ def by_place_up_to(call: str, most: int) -> str:
     return f"{head}({', '.join([*arguments[:most], '*', *arguments[most:]])})"
 
 
+def place_only(call: str, count: int) -> str:
+    """A call's text with the mark behind the first arguments that take no name."""
+    head, arguments = _parts(call)
+    return call if "/" in arguments else f"{head}({', '.join([*arguments[:count], '/', *arguments[count:]])})"
+
+
 def by_name_too(call: str, name: str) -> str:
     """A call's text without the mark of arguments that are given by their places alone, if a name is among them."""
     head, arguments = _parts(call)
@@ -87,6 +94,11 @@ def by_name_too(call: str, name: str) -> str:
     if name not in {text.partition("=")[0].partition(":")[0].strip() for text in first}:
         return call
     return f"{head}({', '.join(text for text in arguments if text != '/')})"
+
+
+def without_default(call: str, name: str) -> str:
+    """A call's text in which leaving an argument out is not the same as giving what the call has as its default."""
+    return re.sub(rf"\b({name}\b[^,=()]*)=None", r"\1=...", call)
 
 
 def all_optional(call: str) -> str:

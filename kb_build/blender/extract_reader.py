@@ -14,18 +14,22 @@ from kb_build.blender.call_texts import (
     by_place,
     by_place_up_to,
     call_text,
+    place_only,
     requiring,
     with_sets,
+    without_default,
 )
 from kb_build.blender.context_members import name_classes
 from kb_build.blender.docstrings import constructed_by, parse_docstring
 from kb_build.blender.manual_links import manual_links
 from kb_build.blender.owners_animated import unmark_unanimated
+from kb_build.blender.references import with_true_references
 from kb_build.blender.same_values import mark_same_values
 from kb_build.blender.tried_facts import ADDED, add_items
 from kb_build.errors import ExtractError
 from kb_build.index.creation import with_whole_calls
-from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.api_names import HANDLERS, TYPES
+from kb_build.symbols.handlers import handlers_type
 from kb_build.symbols.records import (
     EnumItem,
     Link,
@@ -58,7 +62,8 @@ _LISTED_BY_MODULE = re.compile(r"One of the builtin \w+ names\.?")
 _LISTED_NAME = re.compile(r"^\*\*`([A-Z][A-Z0-9_]*)`\*\*", re.MULTILINE)
 # How ``inside/keywords.py`` marks what it finds.
 _NO_KEYWORDS, _BY_PLACE, _BY_NAME, _OPTIONAL = "no-keywords", "by-place:", "by-name:", "all-optional"
-_REQUIRES = "requires:"
+_REQUIRES, _PLACE_ONLY = "requires:", "place-only:"
+_IN_PLACE_OF_ERROR = "instead of raising"  # which None does as any other value, where it is given
 _METHOD_FLAGS = {"classmethod": ("classmethod",), "staticmethod": ("static",)}
 # RNA calls each of these a NodeTree; Blender accepts one kind of tree only, which decides the nodes below.
 _TREES = {
@@ -219,6 +224,11 @@ def _requiring(parsed: Docstring, least: int) -> Docstring:
     return replace(parsed, parameters=tuple(parameters))
 
 
+def _flagged(flags: Iterable[str], beginning: str) -> list[str]:
+    """What follows in the flags that begin so."""
+    return [flag.removeprefix(beginning) for flag in flags if flag.startswith(beginning)]
+
+
 def _symbol(row: dict[str, Any]) -> Symbol:
     """One line of the extract, its docstring read and its call spelled out."""
     parsed = read_docstring(row) if row.get("docstring") or row.get("signature") else None
@@ -238,15 +248,21 @@ def _symbol(row: dict[str, Any]) -> Symbol:
         call = with_sets(parsed.signature, parameters)
         fields["description"] = parsed.description
         fields["type"] = "" if kind == "class" else parsed.type or row.get("type", "")
+        if path.startswith(HANDLERS):
+            fields["type"] = handlers_type(fields["type"])
         flags = row.get("flags", ())
-        if least := next((flag.removeprefix(_REQUIRES) for flag in flags if flag.startswith(_REQUIRES)), ""):
+        for least in _flagged(flags, _REQUIRES):
             parsed = _requiring(parsed, int(least))
             call = requiring(call, [parameter.name for parameter in parsed.parameters], int(least))
         call = by_place(call) if _NO_KEYWORDS in flags else call
-        if most := next((flag.removeprefix(_BY_PLACE) for flag in flags if flag.startswith(_BY_PLACE)), ""):
+        for most in _flagged(flags, _BY_PLACE):
             call = by_place_up_to(call, int(most))
-        for name in (flag.removeprefix(_BY_NAME) for flag in flags if flag.startswith(_BY_NAME)):
+        for count in _flagged(flags, _PLACE_ONLY):
+            call = place_only(call, int(count))
+        for name in _flagged(flags, _BY_NAME):
             call = by_name_too(call, name)
+        for name in (p.name for p in parsed.parameters if _IN_PLACE_OF_ERROR in p.description):
+            call = without_default(call, name)
         if _OPTIONAL in flags:
             call = all_optional(call)
             parsed = replace(parsed, parameters=tuple(replace(p, required=False) for p in parsed.parameters))
@@ -365,6 +381,7 @@ def read_extract(path: Path) -> Extract:
             symbols[symbol.path] = _with_shared_values(symbol, symbols)
         elif any(_LISTED_BY_MODULE.fullmatch(parameter.description) for parameter in symbol.parameters):
             symbols[symbol.path] = _with_values_of_module(symbol, symbols)
+    symbols = with_true_references(symbols)
     prototypes = [
         symbol
         for name in ("bl_rna_get_subclass", "bl_rna_get_subclass_py")

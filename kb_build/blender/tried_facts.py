@@ -16,6 +16,8 @@ from kb_build.symbols.records import (
     EMPTY,
     EMPTY_AT_START,
     ENDS_BEFORE,
+    ENDS_EVERY_TIME,
+    ENDS_IN_MODULE,
     ENDS_LEFT_OUT,
     ENDS_ON_NONE,
     ENDS_WINDOWLESS,
@@ -181,6 +183,8 @@ def _add_crashes(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
             *(ENDS_ON_NONE + name for name in seen.get("none", ())),
             *(ENDS_LEFT_OUT + name for name in seen.get("left_out", ())),
             *([ENDS_WINDOWLESS] if seen.get("always") else ()),
+            *([ENDS_EVERY_TIME] if seen.get("every") else ()),
+            *([ENDS_IN_MODULE] if seen.get("in_module") else ()),
             *([UNSET_BY + seen["instead"]] if seen.get("instead") else ()),
         ]
 

@@ -8,7 +8,7 @@ from kb_build.flow.annotations import Annotations
 from kb_build.flow.expressions import is_math
 from kb_build.flow.facts import DISCRIMINANTS
 from kb_build.flow.guards import Guards
-from kb_build.flow.scopes import chain_text
+from kb_build.flow.scopes import chain_text, item_text
 from kb_build.flow.types import (
     NONE,
     UNKNOWN,
@@ -25,8 +25,10 @@ from kb_build.flow.types import (
     join,
     members,
 )
+from kb_build.symbols.api_names import STRUCT
 
 _TYPES = Module("bpy.types")
+_GROUP = "idprop.types.IDPropertyGroup"
 _CHOOSING = frozenset(
     {"active", "scene", "view_layer", "workspace"}
 )  # which decide what the active object is
@@ -103,6 +105,7 @@ class Assignments(Guards, Annotations):
                 if owner is not UNKNOWN:
                     self.item(owner, key, target)
                 self._fill(target, owner, key, kind)
+                self._keep_group(target, owner, kind)
             case ast.Starred():
                 self.bind_target(target.value, Sequence("list", UNKNOWN))
             case _:
@@ -145,6 +148,15 @@ class Assignments(Guards, Annotations):
                     self.classes[of.number].bind(name, filled)
             case _:
                 pass
+
+    def _keep_group(self, target: ast.Subscript, owner: Type, kind: Type) -> None:
+        """A dictionary that is given to one of Blender's structures is a group of custom properties from then on."""
+        if not (isinstance(owner, Instance) and self.api.descends(owner.cls, STRUCT)):
+            return
+        text, key = item_text(target)
+        self.here.scope.forget(text)
+        if key and isinstance(kind, Mapping) and self.api.is_class(_GROUP):
+            self.here.scope.state.chains[text] = Instance(_GROUP)
 
     def _store(  # noqa: PLR0912 - one case an owner
         self, target: ast.Attribute, kind: Type, value: ast.expr | None

@@ -11,7 +11,7 @@ from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
 from kb_build.flow.doubts import NO_DOUBTS
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE, SUMS
 from kb_build.flow.members import Members
-from kb_build.flow.scopes import chain_text
+from kb_build.flow.scopes import chain_text, item_text
 from kb_build.flow.trees import children
 from kb_build.flow.type_parts import telling, tells
 from kb_build.flow.types import (
@@ -147,6 +147,8 @@ class Expressions(Members):
         key = self.evaluate(node.slice)
         if isinstance(node.slice, ast.Slice):
             return self._sliced(owner, node.slice)
+        if (chains := self.here.scope.state.chains) and (known := chains.get(item_text(node)[0])) is not None:
+            return known
         return self.item(owner, key, node) if owner is not UNKNOWN else UNKNOWN
 
     def _sliced(self, owner: Type, part: ast.Slice) -> Type:

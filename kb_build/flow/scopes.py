@@ -201,3 +201,17 @@ def chain_text(node: ast.expr) -> str:
     if not isinstance(node, ast.Name):
         return ""
     return ".".join((node.id, *reversed(parts)))
+
+
+def item_text(node: ast.Subscript) -> tuple[str, str]:
+    """(text, key) of an item of a chain that is asked for by a text, ``obj["key"]``.
+
+    Without such a key the text is what those of all the chain's items begin with; it is empty for an item of no chain.
+    """
+    chain = chain_text(node.value)
+    text = f"{chain}.[]" if chain else ""
+    match node.slice:
+        case ast.Constant(value=str(key)) if text and key:
+            return f"{text}.{key}", key
+        case _:
+            return text, ""

@@ -6,6 +6,7 @@ import re
 
 TYPES = "bpy.types."
 OPERATORS = "bpy.ops."
+HANDLERS = "bpy.app.handlers."
 
 STRUCT = f"{TYPES}bpy_struct"
 COLLECTION = f"{TYPES}bpy_prop_collection"

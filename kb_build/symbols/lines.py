@@ -27,6 +27,8 @@ from kb_build.symbols.records import (
     ANY,
     EMPTY,
     ENDS_BEFORE,
+    ENDS_EVERY_TIME,
+    ENDS_IN_MODULE,
     ENDS_LEFT_OUT,
     ENDS_ON_NONE,
     ENDS_WINDOWLESS,
@@ -57,6 +59,7 @@ if TYPE_CHECKING:
 _ACTIVE = "bpy.context.object"
 # Before an operator is said to take nothing (see ``kb_build/blender/inside/operator_areas.py``).
 TRIED = "objects of every type in every mode, areas of every type, things that calls add and editors show"
+IN_MODULE = "Blender is a module of Python (`import bpy`)"
 _REGISTERED = "nodes of a class that a script registers: built-in ones refuse it"
 _OF_OWN_NODES = frozenset({"bpy.types.NodeInputs", "bpy.types.NodeOutputs"})
 GET_EVALUATED = ".evaluated_get(bpy.context.evaluated_depsgraph_get())"
@@ -176,6 +179,8 @@ def fatal_lines(symbol: Symbol) -> list[str]:
         ),
         *(f"without `{name}`: give it" for name in symbol.flagged(ENDS_LEFT_OUT)),
         *(["where there is no window"] if ENDS_WINDOWLESS in symbol.flags else ()),
+        *(["whatever it is given: do not call it"] if ENDS_EVERY_TIME in symbol.flags else ()),
+        *([f"where {IN_MODULE}"] if ENDS_IN_MODULE in symbol.flags else ()),
         *(
             "where there is no undo step yet, as in a Blender without a window: make one with "
             f"`{call}`, and only then enter the mode"

@@ -63,6 +63,9 @@ ENDS_WITHOUT = "ends-without:"
 ENDS_ON_NONE, ENDS_LEFT_OUT = "ends-on-none:", "ends-left-out:"
 # The flag of a function that ends a Blender without a window.
 ENDS_WINDOWLESS = "ends-windowless"
+# The flags of a function that ends Blender whatever it is given, and of one that does so where Blender is a module of
+# Python.
+ENDS_EVERY_TIME, ENDS_IN_MODULE = "ends-every-time", "ends-in-module"
 # How a flag begins that names the index of -1 by which a pointer comes to be None.
 UNSET_BY = "unset-by:"
 # How a flag begins that says what must be called before an operator's mode is entered: else Blender ends where there is

@@ -13,10 +13,12 @@ bpy.ops.sculpt.face_sets_create(
     mode="ALL"
 )  # reported without bpy.ops.ed.undo_push(), in a Blender without a window
 image.gl_load()  # reported: in a Blender without a window
+bmesh.ops.bmesh_to_mesh(bm)  # reported: bm.to_mesh(mesh)
+bpy.app.help_text()  # reported: where Blender is a module of Python
 ```
 
-Only None is an error; what crashes some Blenders, or on some things, is a warning: without a window, in a new file,
-where `get` finds nothing.
+Only None, and what crashes whatever is given, are errors; what crashes some Blenders, or on some things, is a warning:
+without a window, in a new file, where `get` finds nothing.
 Not reported: what a script asks for (`if ob:`), and calls without a window in scripts that register what people call.
 """
 
@@ -26,9 +28,12 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import NONE
+from kb_build.symbols.lines import IN_MODULE
 from kb_build.symbols.paths import last_name
 from kb_build.symbols.records import (
     ENDS_BEFORE,
+    ENDS_EVERY_TIME,
+    ENDS_IN_MODULE,
     ENDS_LEFT_OUT,
     ENDS_ON_NONE,
     ENDS_WINDOWLESS,
@@ -56,7 +61,8 @@ def _check(script: Script) -> Iterator[Finding]:
         yield from _given_none(script, given)
     for call in calls(script):
         yield from _left_out(script, call)
-        yield from _without_window(script, call)
+        yield from _everywhere(script, call)
+        yield from _in_some_blenders(script, call)
         yield from _unset(script, call)
         yield from _without_step(script, call)
 
@@ -132,13 +138,19 @@ def _left_out(script: Script, call: CallSite) -> Iterator[Finding]:
         )
 
 
-def _without_window(script: Script, call: CallSite) -> Iterator[Finding]:
-    """A call of what wants a window, in a script that may run without one."""
+def _everywhere(script: Script, call: CallSite) -> Iterator[Finding]:
+    """A call that no argument helps."""
     path = call.callee.symbol.path
-    if ENDS_WINDOWLESS in call.callee.symbol.flags and not _waits_for_people(script):
-        yield Finding(
-            RULE.id, "warning", script.span(call.node), f"`{path}` crashes a Blender without a window.", path
-        )
+    if ENDS_EVERY_TIME in call.callee.symbol.flags:
+        yield Finding(RULE.id, "error", script.span(call.node), f"`{path}` crashes Blender.", path)
+
+
+def _in_some_blenders(script: Script, call: CallSite) -> Iterator[Finding]:
+    """A call of what wants a window, or an application, in a script that may run without one."""
+    path, flags = call.callee.symbol.path, call.callee.symbol.flags
+    where = {ENDS_WINDOWLESS: "a Blender without a window", ENDS_IN_MODULE: f"Blender where {IN_MODULE}"}
+    for blender in [where[flag] for flag in where if flag in flags and not _waits_for_people(script)]:
+        yield Finding(RULE.id, "warning", script.span(call.node), f"`{path}` crashes {blender}.", path)
 
 
 def _unset(script: Script, call: CallSite) -> Iterator[Finding]:

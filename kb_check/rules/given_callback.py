@@ -50,9 +50,11 @@ from kb_build.flow.types import (
     members,
 )
 from kb_build.index.analysis import split_arguments
+from kb_build.symbols.api_names import HANDLERS
+from kb_build.symbols.handlers import NUMBERS_OF_ARGUMENTS
 from kb_check.calls import calls
 from kb_check.findings import Edit, Finding, Fix, Span
-from kb_check.handler_lists import HANDLERS, handler_list
+from kb_check.handler_lists import handler_list
 from kb_check.made_here import once_bound
 from kb_check.misfits import describe
 from kb_check.rule import Rule
@@ -67,7 +69,6 @@ _ADDING = frozenset({"append", "insert"})
 # What tells how many arguments a function gets, as the base has it: ``Callable[[int], bool] | None``.
 _CALLABLE = re.compile(r"Callable\[\[(.*)\], [^\]]*\](?: \| None)?")
 _DECLARING = "bpy.props."  # has a rule of its own
-_OF_HANDLERS = (1, 2)
 _PERSISTENT = "persistent"
 _PERSISTENT_PATH = f"{HANDLERS}{_PERSISTENT}"
 # Parameters that take only functions in Python, and lambdas.
@@ -103,7 +104,7 @@ def _check(script: Script) -> Iterator[Finding]:
         match node:
             case ast.Call(func=ast.Attribute(value=handlers, attr=name), args=[*_, given]) if name in _ADDING:
                 if path := handler_list(script, handlers):
-                    yield from _judged(script, given, path, _OF_HANDLERS, may_be_none=False)
+                    yield from _judged(script, given, path, NUMBERS_OF_ARGUMENTS, may_be_none=False)
             case _:
                 pass
 
@@ -160,7 +161,7 @@ def _refused(function: ast.AST, counts: tuple[int, ...]) -> str:
     if any(fewest <= count and (count <= most or arguments.vararg) for count in counts):
         return ""
     last = f"{counts[-1]} argument{'' if counts[-1] == 1 else 's'}" if counts[-1] else "no argument"
-    return f"{last}, or with one if it takes one" if counts == _OF_HANDLERS else last
+    return f"{last}, or with one if it takes one" if counts == NUMBERS_OF_ARGUMENTS else last
 
 
 def _is_no_function(kind: Type) -> bool:

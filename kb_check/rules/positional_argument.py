@@ -3,7 +3,8 @@
 Functions of Blender's classes take by place only what they need; since 2.80 the rest is given by name. Operators take
 by place nothing but an execution context and whether to push an undo step; until 3.6 a dictionary before them set the
 context, since 4.0 that is ``with bpy.context.temp_override(...)``. The classes of mathutils take one sequence.
-Functions written in C often take no names: those of ``bmesh.utils``, and of vertices, edges and faces of a BMesh.
+Functions written in C often take no names, or none for what comes first: those of ``bmesh.utils``, and of vertices,
+edges and faces of a BMesh.
 
 ```python
 ob.shape_key_add("Smile")  # reported
@@ -15,6 +16,7 @@ bpy.ops.mesh.primitive_cube_add(
 )  # reported: Blender takes the number for a truth value, and makes the usual cube
 bpy.ops.mesh.primitive_cube_add(size=4)
 vert.select_set(select=True)  # reported: vert.select_set(True)
+bm.verts.new(co=(0, 0, 1))  # reported: bm.verts.new((0, 0, 1))
 Vector(0, 0, 1)  # reported
 Vector((0, 0, 1))
 ```
@@ -48,7 +50,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.symbols.records import Parameter
-    from kb_check.calls import CallSite
+    from kb_check.calls import Callee, CallSite
     from kb_check.script import Script
 
 _EXECUTION_CONTEXTS = frozenset(
@@ -71,8 +73,13 @@ def _check(script: Script) -> Iterator[Finding]:
     for call in calls(script):
         if call.callee.symbol.kind == "operator":
             yield from _of_operator(script, call)
-        elif call.callee.symbol.kind == "function" or call.callee.symbol.owner == "mathutils":
+        elif _takes_places(call.callee):
             yield from _of_function(script, call)
+
+
+def _takes_places(callee: Callee) -> bool:
+    """Whether it is a function, or a class of which it is known how it takes what is given."""
+    return callee.symbol.kind == "function" or callee.symbol.owner == "mathutils" or bool(callee.place_only)
 
 
 def _of_operator(script: Script, call: CallSite) -> Iterator[Finding]:
@@ -176,10 +183,10 @@ def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
     path = callee.symbol.path
     arguments = call.node.args
     named = next((keyword for keyword in call.node.keywords if keyword.arg in callee.place_only), None)
-    if named is not None and not path.startswith(_UNRELIABLE):
+    if named is not None:
         yield Finding(
             RULE.id, "error", script.span(named),
-            f"`{path}` takes no names, only places: `{callee.symbol.signature}`.", path,
+            f"`{path}` takes `{named.arg}` by place only: `{callee.symbol.signature}`.", path,
             (), _by_place(script, call),
         )  # fmt: skip
         return
@@ -227,11 +234,13 @@ def _takes_other_things(script: Script, call: CallSite, parameter: Parameter, va
 
 
 def _by_place(script: Script, call: CallSite) -> Fix | None:
-    """The arguments without their names, where they stand in their places already."""
-    names = [keyword.arg for keyword in call.node.keywords]
-    if list(call.callee.positional[len(call.node.args) :][: len(names)]) != names:
+    """The arguments without the names that are not taken, where they stand in their places already."""
+    places = call.callee.place_only[len(call.node.args) :]
+    named = [keyword for keyword in call.node.keywords if keyword.arg in places]
+    in_places = [keyword.arg for keyword in named] == list(places[: len(named)])
+    if not in_places or named != call.node.keywords[: len(named)]:
         return None
-    edits = tuple(Edit(script.span(keyword), ast.unparse(keyword.value)) for keyword in call.node.keywords)
+    edits = tuple(Edit(script.span(keyword), ast.unparse(keyword.value)) for keyword in named)
     return Fix("Leave out the names", edits, sure=True)
 
 

@@ -21,7 +21,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Instance
-from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.api_names import HANDLERS, TYPES
 from kb_build.symbols.flags import freed_by, is_locked
 from kb_build.symbols.records import FREE_ON
 from kb_check.findings import Edit, Finding, Fix
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
-_HANDLERS = "bpy.app.handlers."
 # Members that cannot be assigned to, of classes whose reference does not say so: tried one by one on instances.
 _REFUSED = {
     "mathutils.": frozenset({
@@ -64,7 +63,7 @@ def _check(script: Script) -> Iterator[Finding]:
         if not paths or not row.sure or row.is_ready_for(*LACKS) or (row.missing and not row.possible):
             continue
         symbols = [script.api.symbols.symbol(path) for path in paths]
-        if row.kind == "store" and len(paths) == 1 and paths[0].startswith(_HANDLERS):
+        if row.kind == "store" and len(paths) == 1 and paths[0].startswith(HANDLERS):
             name = paths[0]
             told = f"`{name}` is read-only. Change the list itself: `append`, `remove`, `clear`."
             yield Finding(RULE.id, "error", script.name_span(row.node), told, name)

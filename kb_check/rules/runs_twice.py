@@ -18,6 +18,7 @@ import ast
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.api_names import HANDLERS
 from kb_check.findings import Finding
 from kb_check.rule import Rule
 
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
 
     from kb_check.script import Script
 
-_HANDLERS = "bpy.app.handlers."
 _ADDING = frozenset({"append", "prepend", "insert"})
 
 
@@ -36,15 +36,13 @@ def _check(script: Script) -> Iterator[Finding]:
         return
     mentions = Counter(
         path for row in script.resolutions("attribute", "name") for path in row.symbols
-        if path.startswith(_HANDLERS) or script.api.is_class(path)
+        if path.startswith(HANDLERS) or script.api.is_class(path)
     )  # fmt: skip
     uses = Counter(path for _, path in added)
     for call, path in added:
         if mentions[path] > uses[path]:
             continue
-        what = (
-            "is called once more per frame or event" if path.startswith(_HANDLERS) else "is drawn once more"
-        )
+        what = "is called once more per frame or event" if path.startswith(HANDLERS) else "is drawn once more"
         yield Finding(
             RULE.id, "note", script.span(call),
             f"Run again in the same Blender, this adds to `{path}` once more, and what it adds {what}: remove the "
@@ -62,7 +60,7 @@ def _added(script: Script) -> Iterator[tuple[ast.Call, str]]:
         if row is None or len(row.symbols) != 1 or row.guarded:
             continue
         path = row.symbols[0]
-        if path.startswith(_HANDLERS) or script.api.is_class(path):
+        if path.startswith(HANDLERS) or script.api.is_class(path):
             yield call, path
 
 

@@ -26,6 +26,10 @@ if TYPE_CHECKING:
 _DEFINED = re.compile(r"^(?:def )?(\w+)(?=[(:])")
 
 
+# What makes an instance of a class in C whose documentation does not say it.
+_UNTOLD = f"def __init__(self, *args: {ANY}, **kwargs: {ANY}) -> None: ..."
+
+
 class Classes:
     """Writes classes."""
 
@@ -63,9 +67,12 @@ class Classes:
         if items := self._overloads.items(self._elements.get(cls, "")):
             found["__getitem__"] = items
         symbol = self._api.symbols.symbol(cls)
-        if symbol and symbol.parameters and "__init__" not in spelled and "__init__" not in found:
-            text = self._functions.signature(symbol).text("self")
-            found["__init__"] = f"def __init__({text}) -> None: ..."
+        if symbol and "__init__" not in spelled and "__init__" not in found:
+            if symbol.parameters:
+                text = self._functions.signature(symbol).text("self")
+                found["__init__"] = f"def __init__({text}) -> None: ..."
+            elif not symbol.signature and not cls.startswith(T):
+                found["__init__"] = _UNTOLD
         if extra := open_class_body(cls):
             found["__getattr__"] = extra
         return found | spelled

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from kb_build.index.analysis import stem, words
-from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.api_names import HANDLERS, TYPES
 from kb_serve.recognise.code.products import CLASSES, WITH_AT
 from kb_serve.recognise.messages.ways_to_run import NO_FLUIDS
 
@@ -14,8 +14,7 @@ _STYLE = f"{TYPES}MaterialGPencilStyle"
 _RIGID_BODY = f"{TYPES}RigidBodyObject"
 _RANGES = f"{TYPES}bpy_struct.id_properties_ui"
 _BAKES_FLUIDS = "bpy.ops.fluid.bake_all"
-_HANDLERS = "bpy.app.handlers."
-_PERSISTENT = f"{_HANDLERS}persistent"
+_PERSISTENT = f"{HANDLERS}persistent"
 
 
 def _stems(text: str) -> frozenset[str]:
@@ -118,11 +117,24 @@ _UNRENDERED = (
     "`World.color` colours the viewport alone while `world.use_nodes` is on, as it always is from 5.0: what is "
     'rendered is `world.node_tree.nodes["Background"].inputs["Color"].default_value = (r, g, b, 1.0)`.'
 )
+_PLAIN_FUNCTION = (
+    "`notify` must be a plain function (`def` or `lambda`): a method, a `functools.partial`, a class or another object "
+    "that can be called raises `TypeError: notify expects a function`. Wrap those: `notify=lambda: obj.method()`."
+)
+_REFUSED_CLASS = (
+    "Any other class than a subclass of one of Blender's raises `RuntimeError` (`missing bl_rna attribute`), not "
+    "`ValueError`; a class of Python's own (`int`) crashes Blender."
+)
+_SIGNED = (
+    "The scale is negative on all axes where the matrix mirrors (`matrix.is_negative`), whichever axis it mirrors: "
+    "`Matrix.Diagonal((-1, 2, 3, 1))` gives (-1, -2, -3)."
+)
+_FACES = "The lists hold the faces themselves (`BMFace`), not their indices."
 
 ADVICE: tuple[Advice, ...] = (
     Advice(
         _STAYING,
-        beginning=(_HANDLERS,),
+        beginning=(HANDLERS,),
         about=_stems("handler persistent callback"),
         needs=_PERSISTENT,
     ),
@@ -142,6 +154,10 @@ ADVICE: tuple[Advice, ...] = (
             _stems("abort background crash headless terminate window"),
         ),
     ),
+    Advice(_PLAIN_FUNCTION, frozenset({"bpy.msgbus.subscribe_rna"})),
+    Advice(_REFUSED_CLASS, frozenset({"bpy.utils.register_class"})),
+    Advice(_SIGNED, frozenset({"mathutils.Matrix.to_scale", "mathutils.Matrix.decompose"})),
+    Advice(_FACES, frozenset({"bpy_extras.bmesh_utils.bmesh_linked_uv_islands"})),
     Advice(_NO_KEY, _of("RetimingKeys.add")),
     Advice(
         _NO_RETIMING, _of("RetimingKey", "RetimingKey.timeline_frame", "RetimingKeys", "RetimingKeys.add")

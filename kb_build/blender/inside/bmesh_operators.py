@@ -14,7 +14,8 @@ WANTED = (
     ("expected a float", "float"), ("expected an int", "int"), ("expected True/False", "bool"),
     ("expected a mathutils.Matrix", "Matrix"),
 )  # fmt: skip
-UNUSABLE = ("not working yet", "is not supported")
+NOT_GIVEN = ("not working yet", "is not supported")
+UNUSABLE = "Python cannot pass this keyword: every value raises NotImplementedError."
 ELEMENTS = re.compile(r"expected (?:an? )?\(((?:BM\w+/?)+)\)")
 NO_VALUE = "?"  # in no enumeration
 LENGTH = re.compile(r"sequence length is \d+, expected (\d+)")
@@ -92,8 +93,8 @@ def keyword_parameter(operator, mesh, vertex, keyword):
     row = {"name": keyword, "type": kind}
     if allowed:
         row["enum_items"] = [{"identifier": value} for value in allowed]
-    if any(text in message for text in UNUSABLE):
-        row["description"] = "Python cannot pass this keyword: every value raises NotImplementedError."
+    if any(text in message for text in NOT_GIVEN):
+        row["description"] = UNUSABLE
     return row
 
 

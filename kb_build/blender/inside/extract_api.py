@@ -19,6 +19,7 @@ from . import (
     addon_names,
     context,
     crashes,
+    crashing_calls,
     given_nothing,
     left_out,
     modules,
@@ -106,6 +107,7 @@ def start_beside(_write, found):
             undo_steps.find_all(write)
             reached_modes.find_all(write)
             windowless.find_all(write)
+            crashing_calls.find_all(write)
 
         found["refusals"] = Beside("refusals", tried)
         found["crashes"] = Beside("crashes", lambda write: crashes.find_all(write, observer))

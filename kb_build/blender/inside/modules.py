@@ -194,6 +194,7 @@ def write_class(write, path, cls, told=""):
         signature=signature(cls) if cls.__module__ != "builtins" and "__init__" in vars(cls) else "",
         base=base_path(cls),
         group="data",
+        flags=flags_of(cls),
     )
     written = set()
     for ancestor in cls.__mro__:

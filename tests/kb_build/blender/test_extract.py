@@ -253,6 +253,16 @@ def test_a_call_without_its_arguments_gets_those_that_are_described(tmp_path: Pa
         ("aud.Sequence.add", "add(sound, begin, end=..., skip=...)"),
         ("aud.Sound.binaural", "binaural(hrtfs, source, threadPool, /)"),
         ("aud.Sound.list", "list(random, /)"),
+        ("aud.Sound.resample", "resample(rate, quality=..., /)"),
+        (
+            "aud.Sound.write",
+            "write(filename, rate=..., channels=..., format=..., container=..., codec=..., bitrate=..., "
+            "buffersize=...)",
+        ),
+        (
+            "aud.Sound.timeStretchPitchScale",
+            "timeStretchPitchScale(time_stretch=..., pitch_scale=..., quality=..., preserve_formant=...)",
+        ),
         ("aud.SequenceEntry.setAnimationData", "setAnimationData(type, frame, data, animated, /)"),
     ],
 )

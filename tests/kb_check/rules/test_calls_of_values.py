@@ -7,6 +7,7 @@ import subprocess
 import sys
 from typing import TYPE_CHECKING
 
+import pytest
 from statements_in_blender import run_statements
 
 from kb_build.symbols.paths import last_name
@@ -14,6 +15,8 @@ from kb_check.calls import callee_of
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from conftest import Check
 
     from kb_check.checker import Checker
 
@@ -201,9 +204,65 @@ vert.hide_set(False)
 bm.from_mesh(mesh=None)
 """
     (found,) = rule_checker.check(code, rules=["positional-argument"])
-    assert (found.span.line, "only places" in found.message) == (4, True)
+    assert (found.span.line, "`select` by place only" in found.message) == (4, True)
     assert found.fix is not None
     assert [edit.text for edit in found.fix.edits] == ["True"]
+
+
+_NAMELESS = """\
+import bpy, aud, bmesh, gpu
+bm = bmesh.new()
+layer = bm.verts.layers.deform.verify()
+verts = [bm.verts.new((x, x * x, 0)) for x in range(3)]
+weights = verts[0][layer]
+plays = aud.PlaybackManager(aud.Device())
+scene = bpy.context.scene
+scene["group"] = {"a": 1}
+"""
+# With names that are refused, and as they are taken.
+_FIRST_PLACES = {
+    "bm.verts.new(co=(0, 0, 0))": "bm.verts.new((0, 0, 0), source=None)",
+    "bm.edges.new(verts=verts[:2])": "bm.edges.new(verts[:2])",
+    "bm.faces.new(verts=verts)": "bm.faces.new(verts)",
+    "weights.get(key=0)": "weights.get(0)",
+    "bpy.utils.flip_name(name='A.L')": "bpy.utils.flip_name('A.L', strip_digits=False)",
+    "gpu.types.GPUStageInterfaceInfo(name='x')": "gpu.types.GPUStageInterfaceInfo('x')",
+    "plays.addCategory(volume=1.0)": "plays.addCategory(1.0)",
+    "aud.Sound.sine(frequency=440)": "aud.Sound.sine(440)",
+    "scene['group'].get('z', default=3)": "scene['group'].get('z', 3)",
+}
+
+
+def test_first_arguments_that_take_no_names_are_refused_with_them(check: Check, tmp_path: Path) -> None:
+    lines = [*_NAMELESS.splitlines(), *_FIRST_PLACES, *_FIRST_PLACES.values()]
+    errors = [error.partition(":")[0] for error, *_ in run_statements(tmp_path, lines)]
+    found = {found.span.line - 1 for found in check("positional-argument", "\n".join(lines))}
+    refused = {place for place, error in enumerate(errors) if error == "TypeError"}
+    assert [lines[place] for place in sorted(refused)] == [*_FIRST_PLACES]
+    assert [lines[place] for place in sorted(found)] == [*_FIRST_PLACES]
+
+
+@pytest.mark.parametrize(
+    ("given", "edits"),
+    [
+        ("name='A.L', strip_digits=True", ["'A.L'"]),
+        ("strip_digits=True, name='A.L'", None),
+    ],
+)
+def test_names_that_are_taken_are_kept_by_the_fix(check: Check, given: str, edits: list[str] | None) -> None:
+    (found,) = check("positional-argument", f"import bpy\nbpy.utils.flip_name({given})\n")
+    assert (None if found.fix is None else [edit.text for edit in found.fix.edits]) == edits
+
+
+def test_what_became_something_else_is_no_group_of_custom_properties(check: Check) -> None:
+    code = "import bpy\nscene = bpy.context.scene\nscene['g'] = {{}}\n{}\nscene['g'].get('z', default=3)\n"
+    changes = ("scene['g'] = made()", "scene[name] = made()", "scene = made()")
+    assert [len(check("positional-argument", code.format(change))) for change in ("", *changes)] == [
+        1,
+        0,
+        0,
+        0,
+    ]
 
 
 def test_one_item_of_several_becomes_a_set_by_the_fix(rule_checker: Checker) -> None:

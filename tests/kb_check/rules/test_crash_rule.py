@@ -132,6 +132,37 @@ def test_what_crashes_is_said_of_the_symbol_and_found_in_scripts(
     assert not check("crash", f"{_START}{there}\n{instead}")
 
 
+_ASKED = "import bpy, bmesh\nbm = bmesh.new()\nvert = bm.verts.new()\nmesh = bpy.data.meshes.new('m')\n"
+
+
+@pytest.mark.parametrize(
+    ("path", "fatal", "instead", "severity"),
+    [
+        ("bmesh.ops.bmesh_to_mesh", "bmesh.ops.bmesh_to_mesh(bm)", "bm.to_mesh(mesh)", "error"),
+        ("bmesh.ops.mesh_to_bmesh", "bmesh.ops.mesh_to_bmesh(bm)", "bm.from_mesh(mesh)", "error"),
+        ("bmesh.ops.object_load_bmesh", "bmesh.ops.object_load_bmesh(bm)", "bm.to_mesh(mesh)", "error"),
+        (
+            "bmesh.ops.pointmerge_facedata",
+            "bmesh.ops.pointmerge_facedata(bm, verts=[vert])",
+            "bmesh.ops.pointmerge_facedata(bm, verts=[vert], vert_snap=vert)",
+            "warning",
+        ),
+        ("bpy.app.help_text", "bpy.app.help_text()", "bpy.app.version_string", "warning"),
+    ],
+)
+def test_what_crashes_outside_rna_is_said_and_found(
+    check: Check, rule_checker: Checker, path: str, fatal: str, instead: str, severity: str
+) -> None:
+    symbol = rule_checker.api.symbols.symbol(path)
+    if symbol is None:
+        pytest.skip(f"this Blender has no {path}")
+    crashes = _ends(_ASKED + fatal)
+    assert bool(fatal_lines(symbol)) is crashes
+    assert [found.severity for found in check("crash", _ASKED + fatal)] == [severity] * crashes
+    assert not check("crash", _ASKED + instead)
+    assert not _ends(_ASKED + instead)
+
+
 def test_what_is_written_in_its_place_crashes_nothing(rule_checker: Checker) -> None:
     known = [path for path in _CRASHES if rule_checker.api.symbols.symbol(f"bpy.types.{path}")]
     assert not _ends(_START + "\n".join(f"{_CRASHES[path][0]}\n{_CRASHES[path][2]}" for path in known))

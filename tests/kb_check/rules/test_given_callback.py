@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
     from conftest import Check
 
+    from kb_check.checker import Checker
+
 _HANDLERS = {
     "lambda: None": False,
     "lambda scene: None": True,
@@ -41,6 +43,23 @@ _TAKEN = [
     "def make():\n    return stop\nbpy.app.timers.register(make())",
     "class Clock:\n    def tick(self):\n        pass\nbpy.app.timers.register(Clock().tick)",
 ]
+
+
+_FACTORY = """
+import bpy
+tell = bpy.app.handlers.persistent(lambda *given: print("given", given, flush=True))
+bpy.app.handlers.load_factory_startup_post.append(tell)
+bpy.ops.wm.read_factory_settings()
+"""
+
+
+def test_handlers_whose_reference_has_no_arguments_get_some(rule_checker: Checker) -> None:
+    done = subprocess.run([sys.executable, "-P", "-c", _FACTORY], capture_output=True, text=True, check=True)
+    assert "given (None, None)" in done.stdout
+    symbol = rule_checker.api.symbols.symbol("bpy.app.handlers.load_factory_startup_post")
+    assert symbol is not None
+    assert "Callable[[]," not in symbol.type
+    assert "Callable[[None, None], None]" in symbol.type
 
 
 def test_handlers_that_cannot_be_called_are_found(check: Check, tmp_path: Path) -> None:

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import aud
 import bmesh
 import bpy
 import mathutils
@@ -82,6 +83,11 @@ def meshes() -> None:
         for loop in face.loops:
             loop[layer].uv = (0.0, 1.0)
     bmesh.ops.bevel(bm, geom=bm.edges[:], offset=0.1, affect="EDGES")
+
+
+def sounds() -> None:
+    device = aud.Device("None")
+    device.play(aud.Sound.sine(440))
 
 
 @bpy.app.handlers.persistent

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 bpy: Any = pytest.importorskip("bpy")
+bmesh: Any = pytest.importorskip("bmesh")
+bmesh_utils: Any = pytest.importorskip("bpy_extras.bmesh_utils")
+mathutils: Any = pytest.importorskip("mathutils")
 pytestmark = pytest.mark.blender
 TYPES = "bpy.types."
 POINT = "_bpy_internal.grease_pencil.stroke.GreasePencilStrokePoint"
@@ -210,6 +213,27 @@ def test_a_new_actions_slot_is_made_by_keys_or_by_hand(reader: BaseReader) -> No
     data.action = bpy.data.actions.new("b")
     obj.keyframe_insert("location", frame=1)
     assert data.action_slot is not None
+
+
+# What docstrings have otherwise
+
+
+def test_what_docstrings_have_otherwise_is_told_as_it_is(reader: BaseReader) -> None:
+    mirrored = mathutils.Matrix.Diagonal((-1, 2, 3, 1))
+    assert "negative on all axes" in said(reader, "mathutils.Matrix.to_scale")
+    assert tuple(mirrored.to_scale()) == (-1, -2, -3)
+    assert "plain function" in said(reader, "bpy.msgbus.subscribe_rna")
+    key = (bpy.types.LayerObjects, "active")
+    with pytest.raises(TypeError, match="notify expects a function"):
+        bpy.msgbus.subscribe_rna(key=key, owner=object(), args=(), notify=[].clear)
+    assert "RuntimeError" in said(reader, "bpy.utils.register_class")
+    with pytest.raises(RuntimeError, match="missing bl_rna attribute"):
+        bpy.utils.register_class(type("Plain", (), {}))
+    assert "the faces themselves" in said(reader, "bpy_extras.bmesh_utils.bmesh_linked_uv_islands")
+    mesh = bmesh.new()
+    bmesh.ops.create_cube(mesh, size=1)
+    islands = bmesh_utils.bmesh_linked_uv_islands(mesh, mesh.loops.layers.uv.new())
+    assert isinstance(islands[0][0], bmesh.types.BMFace)
 
 
 # Retiming
