@@ -39,6 +39,7 @@ from kb_build.symbols.records import (
     Symbol,
     last_name,
     symbol_fields,
+    told_by,
 )
 
 if TYPE_CHECKING:
@@ -224,11 +225,6 @@ def _requiring(parsed: Docstring, least: int) -> Docstring:
     return replace(parsed, parameters=tuple(parameters))
 
 
-def _flagged(flags: Iterable[str], beginning: str) -> list[str]:
-    """What follows in the flags that begin so."""
-    return [flag.removeprefix(beginning) for flag in flags if flag.startswith(beginning)]
-
-
 def _symbol(row: dict[str, Any]) -> Symbol:
     """One line of the extract, its docstring read and its call spelled out."""
     parsed = read_docstring(row) if row.get("docstring") or row.get("signature") else None
@@ -251,15 +247,15 @@ def _symbol(row: dict[str, Any]) -> Symbol:
         if path.startswith(HANDLERS):
             fields["type"] = handlers_type(fields["type"])
         flags = row.get("flags", ())
-        for least in _flagged(flags, _REQUIRES):
+        for least in told_by(flags, _REQUIRES):
             parsed = _requiring(parsed, int(least))
             call = requiring(call, [parameter.name for parameter in parsed.parameters], int(least))
         call = by_place(call) if _NO_KEYWORDS in flags else call
-        for most in _flagged(flags, _BY_PLACE):
+        for most in told_by(flags, _BY_PLACE):
             call = by_place_up_to(call, int(most))
-        for count in _flagged(flags, _PLACE_ONLY):
+        for count in told_by(flags, _PLACE_ONLY):
             call = place_only(call, int(count))
-        for name in _flagged(flags, _BY_NAME):
+        for name in told_by(flags, _BY_NAME):
             call = by_name_too(call, name)
         for name in (p.name for p in parsed.parameters if _IN_PLACE_OF_ERROR in p.description):
             call = without_default(call, name)

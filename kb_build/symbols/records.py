@@ -16,7 +16,7 @@ from kb_build.symbols.paths import last_name, socket_name, socket_side
 from kb_build.symbols.taken import NEVER, Taken
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
 Scalar = str | int | float | bool | None
 Default = Scalar | list[Any]
@@ -241,6 +241,11 @@ class Refusal:
         return bool(self.values or self.by or self.given or self.mode or self.again)
 
 
+def told_by(flags: Iterable[str], prefix: str) -> tuple[str, ...]:
+    """What the flags that begin with ``prefix`` say."""
+    return tuple(flag.removeprefix(prefix) for flag in flags if flag.startswith(prefix))
+
+
 @dataclass(frozen=True, slots=True)
 class Symbol:
     """One public identifier of Blender's Python API.
@@ -365,7 +370,7 @@ class Symbol:
 
     def flagged(self, prefix: str) -> tuple[str, ...]:
         """What the flags that begin with ``prefix`` say."""
-        return tuple(flag.removeprefix(prefix) for flag in self.flags if flag.startswith(prefix))
+        return told_by(self.flags, prefix)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from kb_build.index.analysis import stem, words
 from kb_build.symbols.api_names import HANDLERS, TYPES
 from kb_serve.recognise.code.products import CLASSES, WITH_AT
+from kb_serve.recognise.messages.nameless.python import PLAIN_FUNCTION
 from kb_serve.recognise.messages.ways_to_run import NO_FLUIDS
 
 _STROKE = "_bpy_internal.grease_pencil.stroke.GreasePencilStroke"
@@ -117,10 +118,6 @@ _UNRENDERED = (
     "`World.color` colours the viewport alone while `world.use_nodes` is on, as it always is from 5.0: what is "
     'rendered is `world.node_tree.nodes["Background"].inputs["Color"].default_value = (r, g, b, 1.0)`.'
 )
-_PLAIN_FUNCTION = (
-    "`notify` must be a plain function (`def` or `lambda`): a method, a `functools.partial`, a class or another object "
-    "that can be called raises `TypeError: notify expects a function`. Wrap those: `notify=lambda: obj.method()`."
-)
 _REFUSED_CLASS = (
     "Any other class than a subclass of one of Blender's raises `RuntimeError` (`missing bl_rna attribute`), not "
     "`ValueError`; a class of Python's own (`int`) crashes Blender."
@@ -154,7 +151,7 @@ ADVICE: tuple[Advice, ...] = (
             _stems("abort background crash headless terminate window"),
         ),
     ),
-    Advice(_PLAIN_FUNCTION, frozenset({"bpy.msgbus.subscribe_rna"})),
+    Advice(PLAIN_FUNCTION, frozenset({"bpy.msgbus.subscribe_rna"})),
     Advice(_REFUSED_CLASS, frozenset({"bpy.utils.register_class"})),
     Advice(_SIGNED, frozenset({"mathutils.Matrix.to_scale", "mathutils.Matrix.decompose"})),
     Advice(_FACES, frozenset({"bpy_extras.bmesh_utils.bmesh_linked_uv_islands"})),

@@ -134,18 +134,21 @@ class TopicPages:
         """The page of the data that some objects are of: text objects."""
         data, _, last = plain.rpartition(" ")
         slug = self._called(data) if topic_key(last) == topic_key(_OF_OBJECTS) else ""
-        return slug if any(map(self._reader.is_object_data, self._reader.symbols_of_page(slug))) else ""
+        return (
+            slug if slug and any(map(self._reader.is_object_data, self._reader.symbols_of_page(slug))) else ""
+        )
 
     def _in_chapter(self, plain: str) -> str:
         """The chapter that is called with the name of the one that it is in, as UV unwrapping; unless a class is called
         so.
         """
         above, _, name = plain.rpartition(" ")
-        if key(plain) in {key(entry.name) for entry in self._classes_called(plain)}:
+        around = self._called(above)
+        chapter = self._called(name) if around else ""
+        if chapter == around or not _is_chapter_of(around, chapter):
             return ""
-        around, chapter = self._called(above), self._called(name)
-        is_inside = chapter != around and bool(around) and _is_chapter_of(around, chapter)
-        return chapter if is_inside and self._reader.page_children(chapter) else ""
+        is_class = key(plain) in {key(entry.name) for entry in self._classes_called(plain)}
+        return chapter if not is_class and self._reader.page_children(chapter) else ""
 
     def _in_other_words(self, plain: str) -> str:
         """The page of what the documentation calls otherwise, in an everyday word, or in two that stand for the same:
@@ -175,6 +178,8 @@ class TopicPages:
         """The page of a zone that is asked for with the name of one of its sockets: the iterations of a repeat zone."""
         zone, _, socket = plain.rpartition(" ")
         slug = self._called(zone) if zone.lower().endswith(_OF_NODES[1]) else ""
+        if not slug:
+            return ""
         names = (name for node in self._reader.symbols_of_page(slug) for name in self._reader.members(node))
         return slug if any(f'["{socket.lower()}"]' in name.lower() for name in names) else ""
 

@@ -78,6 +78,25 @@ def sent_apart(work, seconds=SECONDS):
         return ended, [json.loads(line) for line in file]
 
 
+def ended_at(names, do):
+    """Those of some names for which doing something ends the process that does it for all of them, one after another:
+    each time the next process goes on behind that.
+    """
+    left = list(names)
+
+    def work(send):
+        for name in left:
+            send(name)
+            do(name)
+
+    while left:
+        is_whole, begun = sent_apart(work)
+        if is_whole or not begun:
+            return
+        yield begun[-1]
+        del left[: len(begun)]
+
+
 class Beside:
     """Writes records in a process of its own, a copy of this one, while this one goes on.
 

@@ -12,7 +12,7 @@ from functools import partial
 import bmesh
 import bpy
 
-from .apart import crashes, sent_apart
+from .apart import crashes, ended_at
 from .bmesh_operators import UNUSABLE, parameters
 
 ELEMENTS = ("BMVert", "BMEdge", "BMFace")
@@ -48,23 +48,6 @@ def cause(operator):
     return {"every": True} if any(row.get("description") == UNUSABLE for row in rows) else {}
 
 
-def crashing(operators):
-    """The names of those operators at which a process that calls all of them ends."""
-    left = list(operators)
-
-    def work(send):
-        for name in left:
-            send(name)
-            call(operators[name])
-
-    while left:
-        is_whole, begun = sent_apart(work)
-        if is_whole or not begun:
-            return
-        yield begun[-1]
-        del left[: len(begun)]
-
-
 def call_alone(function):
     """Calls a function with nothing."""
     with suppress(Exception):
@@ -76,7 +59,7 @@ def find_all(write):
     # An operator has no name of its own, but the very text by which it was asked for: the keys keep it.
     members = {name: getattr(bmesh.ops, name) for name in sorted(dir(bmesh.ops))}
     operators = {name: value for name, value in members.items() if type(value).__name__ == "BMeshOpFunc"}
-    for name in crashing(operators):
+    for name in ended_at(operators, lambda name: call(operators[name])):
         if causes := cause(operators[name]):
             write("crashes", path=f"bmesh.ops.{name}", **causes)
     for name in sorted(dir(bpy.app)) if getattr(bpy.app, "module", False) else ():

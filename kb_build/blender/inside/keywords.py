@@ -112,6 +112,11 @@ def callable_of(value):
     return None
 
 
+def takes_no_names(said):
+    """Whether what Blender says of a call with a name is that the function takes none at all."""
+    return any(text in said for text in REFUSED)
+
+
 def is_documented_class(value):
     """Whether a class's documentation says what it is called with."""
     return isinstance(value, type) and CLASS.match(inspect.getdoc(value) or "") is not None
@@ -223,7 +228,7 @@ def of_fewer(function, said):
     told = TOLD.match(inspect.getdoc(function) or "")
     if told is None or not lacks_marks(function):
         return []
-    if any(text in said for text in REFUSED):
+    if takes_no_names(said):
         # What counts its arguments first is safe with none; some others crash Blender.
         at_least = AT_LEAST.search(refusal(function)) if TAKES.search(refusal(function, *MANY)) else None
         least = int(at_least[1]) if at_least else None
@@ -243,11 +248,10 @@ def flags_of(value):
     if function.__module__ == PROPERTIES:
         return of_property(function)
     said = refusal(function, **NO_NAME)
-    takes_names = not any(text in said for text in REFUSED)
     if isinstance(value, type):  # which is not made
-        return [] if takes_names else [NO_KEYWORDS]
+        return [NO_KEYWORDS] if takes_no_names(said) else []
     untold = of_untold(function) or of_fewer(function, said)
-    if not takes_names:
+    if takes_no_names(said):
         return [NO_KEYWORDS, *untold]
     told = untold or of_names(function, said) or of_lookups(function) or of_places(function)
     return [*told, *of_nameless(function, said)]

@@ -11,7 +11,7 @@ from contextlib import suppress
 import bpy
 
 from .active_objects import can_run, modes
-from .apart import apart, sent_apart
+from .apart import apart, ended_at
 from .instances.making import activate, mesh_object, remove
 from .operator_needs import operators
 
@@ -45,22 +45,15 @@ def is_survived_with_step(operator, mode):
 
 def ending(left, paths, mode):
     """Those of these operators at which a process that calls all of them ends."""
-    obj, paths = bpy.context.object, list(paths)
+    obj = bpy.context.object
 
-    def work(send):
-        for path in paths:
-            send(path)
-            with suppress(Exception):
-                if obj.mode != mode:
-                    bpy.ops.object.mode_set(mode=mode)
-                left[path]()
+    def run(path):
+        with suppress(Exception):
+            if obj.mode != mode:
+                bpy.ops.object.mode_set(mode=mode)
+            left[path]()
 
-    while paths:
-        is_whole, begun = sent_apart(work)
-        if is_whole or not begun:
-            return
-        yield begun[-1]
-        del paths[: len(begun)]
+    return ended_at(paths, run)
 
 
 def find_all(write):

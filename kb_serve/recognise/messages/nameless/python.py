@@ -11,6 +11,11 @@ _FROM_WHERE = (
     "`.get(name)` of a collection finds nothing of that name, a pointer was not set (`obj.active_material`, "
     "`scene.camera`), or a function ended without `return`."
 )
+PLAIN_FUNCTION = (
+    "`notify` must be a plain function (`def` or `lambda`): a method, a `functools.partial`, a class or another object "
+    "that can be called raises `TypeError: notify expects a function`. Wrap those: "
+    "`notify=lambda *args: self.changed(*args)`."
+)
 PYTHON = (
     NamelessMessage(
         ("__init__() takes 1 positional argument but ",),
@@ -29,8 +34,7 @@ PYTHON = (
     NamelessMessage(
         ("notify expects a function, found ",),
         ("bpy.msgbus.subscribe_rna",),
-        "`notify` takes nothing but a function in Python or a `lambda`: for a method, a `functools.partial` or a class "
-        "write `notify=lambda *args: self.changed(*args)`.",
+        PLAIN_FUNCTION,
     ),
     NamelessMessage(
         ("Unknown unit system specified: ",),
