@@ -65,6 +65,7 @@ def make_server(service: Service) -> Server[None]:
                 await anyio.to_thread.run_sync(service.warm)
             finally:
                 ready.set()
+            await anyio.to_thread.run_sync(service.load_search)
             await anyio.to_thread.run_sync(service.upkeep.run, abandon_on_cancel=True)
 
         async with anyio.create_task_group() as tasks:

@@ -58,11 +58,14 @@ class Service:
 
     def warm(self) -> None:
         """Loads what the first answer needs, and looks up which Blender is in use and whether it has a base."""
-        import_module("kb_serve.rank.search")  # else loaded by the first search
         _ = self.bases.in_use  # an executable takes long to say it
         self.upkeep.plan()
         with contextlib.suppress(KBServeError):
             self.upkeep.note(self.bases.pick().meta, None)
+
+    def load_search(self) -> None:
+        """Loads what the first query needs that is no name."""
+        import_module("kb_serve.rank.search")
 
     def ask(
         self, query: str, *, blender: str | None, limit: int, max_tokens: int, part: int

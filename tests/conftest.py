@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import compileall
+import gc
 import os
 from contextlib import closing, suppress
 from pathlib import Path
@@ -57,6 +58,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
             item.add_marker(pytest.mark.corpora)
     if "PYTEST_XDIST_WORKER" in os.environ:
         _begin_with_long_files(items)
+
+
+def pytest_collection_finish() -> None:
+    """What was collected lives to the end: neither this process nor those that it forks look through it again."""
+    gc.collect()
+    gc.freeze()
 
 
 def _begin_with_long_files(items: list[pytest.Item]) -> None:

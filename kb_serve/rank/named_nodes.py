@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import NODE, TYPES
-from kb_serve.rank.signals import NODE_WORDS
+from kb_serve.rank.asked_words import NODE_WORDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

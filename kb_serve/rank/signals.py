@@ -13,6 +13,7 @@ import numpy as np
 
 from kb_build.schema import DOCUMENT_KINDS
 from kb_serve.rank.areas import NO_AREA, unasked
+from kb_serve.rank.asked_words import CODE_WORDS, NODE_WORDS, REMOVAL_WORDS
 from kb_serve.rank.weights import WEIGHTS
 
 if TYPE_CHECKING:
@@ -25,19 +26,6 @@ if TYPE_CHECKING:
 
     Signal = Callable[["Evidence"], Scores | None]
 
-# Who says one of these asks what to call, not where to click.
-CODE_WORDS = frozenset(
-    """addon api bpy callback code function headless loop method module numpy programmatically python script scripts
-    variable""".split()  # noqa: SIM905
-)
-# There are so many nodes that one has something of everything; who wants one mostly says so.
-NODE_WORDS = frozenset(
-    "compositing compositor geometry node nodes nodetree shader shaders socket sockets".split()  # noqa: SIM905
-)
-REMOVAL_WORDS = frozenset(
-    """away clean clear cut delete deleted deleting detach discard drop empty erase forget free get hide kill lose off
-    purge remove removed removes removing reset rid unassign unbake undo unlink wipe without""".split()  # noqa: SIM905
-)
 _FEEDBACK = 100
 _FEEDBACK_POWER = 3  # the weaker half of the feedback units hardly votes
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from typing import TYPE_CHECKING
 
 import pytest
@@ -20,6 +22,16 @@ if TYPE_CHECKING:
 def test_one_query_in_two_lines(base: Path) -> None:
     with KnowledgeBase(base) as kb:
         assert kb.query("ClothSettings.quality").hits[0].id == "bpy.types.ClothSettings.quality"
+
+
+def test_names_are_answered_without_what_only_a_search_needs(base: Path) -> None:
+    code = (
+        "import sys\nfrom pathlib import Path\nfrom kb_serve.knowledge_base import KnowledgeBase\n"
+        f"answer = KnowledgeBase(Path({str(base)!r})).query('bpy.types.Scene.frame_end')\n"
+        "assert answer.hits[0].id == 'bpy.types.Scene.frame_end'\n"
+        "assert 'numpy' not in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
 
 
 def test_the_raw_record_of_a_symbol_is_the_whole_of_it(kb: KnowledgeBase, reader: BaseReader) -> None:

@@ -17,9 +17,9 @@ LEAST = 4
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Marks them ``whole``: of each test with many cells, the second, the fourth, …"""
     tables: dict[tuple[Path, str], list[pytest.Item]] = {}
+    own = frozenset(HERE.glob("test_*.py")) - {TRIED_WHOLE}
     for item in items:
-        is_here = item.path.is_relative_to(HERE) and item.path != TRIED_WHOLE
-        if is_here and isinstance(item, pytest.Function) and "callspec" in vars(item):
+        if item.path in own and isinstance(item, pytest.Function) and "callspec" in vars(item):
             tables.setdefault((item.path, item.originalname), []).append(item)
     for cells in tables.values():
         for item in cells[1::2] if len(cells) >= LEAST else ():

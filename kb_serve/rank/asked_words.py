@@ -1,0 +1,17 @@
+"""Words by which people say what kind of thing they ask for."""
+
+from __future__ import annotations
+
+# Who says one of these asks what to call, not where to click.
+CODE_WORDS = frozenset(
+    """addon api bpy callback code function headless loop method module numpy programmatically python script scripts
+    variable""".split()  # noqa: SIM905
+)
+# There are so many nodes that one has something of everything; who wants one mostly says so.
+NODE_WORDS = frozenset(
+    "compositing compositor geometry node nodes nodetree shader shaders socket sockets".split()  # noqa: SIM905
+)
+REMOVAL_WORDS = frozenset(
+    """away clean clear cut delete deleted deleting detach discard drop empty erase forget free get hide kill lose off
+    purge remove removed removes removing reset rid unassign unbake undo unlink wipe without""".split()  # noqa: SIM905
+)
