@@ -36,3 +36,9 @@ def is_internal(socket: Symbol, key: str = "") -> bool:
     """Whether no setting of its node shows a socket, so that nothing but its index gives it: no ``key`` either."""
     is_hidden = "hidden-by-default" in socket.flags and not shown_when(socket)
     return is_hidden and not any(f'"{key or socket.label}"' in subscript for subscript in socket.subscripts)
+
+
+def is_by_others(socket: Symbol) -> bool:
+    """Whether settings of other things than its node show a socket: those of the view layer whose passes it reads."""
+    first = shown_when(socket).partition("=")[0]
+    return not socket.modes and "." in first

@@ -19,8 +19,8 @@ mix.data_type = "RGBA"
 tree.links.new(mix.outputs[0], emission.inputs[0])  # a warning: mix.outputs[2] is the one of colours
 ```
 
-Not reported: nodes that the script did not make itself, and scripts that name a property of the mode anywhere, compute
-names or import modules which may change scenes.
+Not reported: nodes that the script did not make itself, passes of the compositor's Render Layers, and scripts that name
+a property of the mode anywhere, compute names or import modules which may change scenes.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from kb_check.hidden_links import hidden_link
 from kb_check.made_here import is_new, knows_all, named_words
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
-from kb_check.socket_modes import deciding, is_internal
+from kb_check.socket_modes import deciding, is_by_others, is_internal
 from kb_check.zone_pairing import unpaired
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def _check(script: Script) -> Iterator[Finding]:
         if not certain or not isinstance(node, ast.Subscript) or not isinstance(node.value, ast.Attribute):
             continue
         sockets = [symbol for path in row.symbols if (symbol := script.api.symbols.symbol(path))]
-        if row.value in _asked(script):
+        if row.value in _asked(script) or any(map(is_by_others, sockets)):
             continue
         owner = node.value.value
         message = unpaired(script, sockets, node) or _hidden(script, sockets, row)

@@ -100,6 +100,10 @@ _BAKED = (
     "What is left out is not the default that is listed here, but what `scene.render.bake` has, where it has a setting "
     "of that name: `target`, `margin`, `use_clear`, `normal_space` …"
 )
+_BAKED_BY = (
+    "`scene.cycles.bake_type` is what the button of the window bakes; `bpy.ops.object.bake` does not read it. Write "
+    "`bpy.ops.object.bake(type='AO')`: without `type` it bakes 'COMBINED'."
+)
 _ALL = "`{}(indices=[])` {}, as if it were left out: call it only `if indices:`."
 _COMPRESSED = (
     "Left out, `compress` is not False: the file is compressed as the one that is open, and a new one where "
@@ -161,6 +165,7 @@ ADVICE: tuple[Advice, ...] = (
     ),
     Advice(_FALLS, _of("ClothSettings.gravity")),
     Advice(_BAKED, frozenset({"bpy.ops.object.bake"})),
+    Advice(_BAKED_BY, frozenset({"bpy.ops.object.bake"}) | _of("CyclesRenderSettings.bake_type")),
     Advice(_COMPRESSED, frozenset({"bpy.ops.wm.save_as_mainfile", "bpy.ops.wm.save_mainfile"})),
     Advice(_UNREAD, _of("Image.pixels", "Image"), asked=_stems("result")),
     Advice(_UNRENDERED, _of("World.color")),

@@ -10,6 +10,7 @@ import math
 
 import bpy
 
+from . import passes
 from .instances.assigning import put, refused_items
 from .rna import read_items
 from .wire import limit, plain
@@ -154,8 +155,14 @@ class Sockets:
         new = {key for key, (_, shown, _, _) in self.seen.items() if shown}
         self.modes = self.vary()
         self.vary_pairs()
-        # key → when it is shown, where that is more than one condition for each property
+        # key → when it is shown, where that is more than one condition for each property, or none of the node's
         self.conditions = self.checked()
+        # Those of passes stand where the others that are shown leave room.
+        self.placeless = set()
+        if passes.reads_passes(nodes[0]):
+            found = passes.conditions(nodes[0], lambda state: self.look(nodes[0], state))
+            self.conditions |= found
+            self.placeless |= found.keys()
         self.hidden = self.rows.keys() - new
 
     def look(self, node, mode):
@@ -266,7 +273,7 @@ class Sockets:
         texts = [f'{side}["{name}"]'] if name and by_name == present else []
         if by_identifier == present and identifier != name:
             texts.append(f'{side}["{identifier}"]')
-        if len(self.places[key]) == 1:
+        if len(self.places[key]) == 1 and key not in self.placeless:
             texts.append(f"{side}[{next(iter(self.places[key]))}]")
         return texts, by_name != present and bool(shown) and shown <= by_name
 
@@ -397,6 +404,10 @@ def write_all(write, structs, observer, former):
         nodes = make(trees, identifier)
         if not nodes and scene is not None:
             nodes = make({"CompositorNodeTree": scene.node_tree}, identifier)  # pyright: ignore[reportAttributeAccessIssue]
+        for node in nodes.values():
+            put(
+                node, "scene", scene or bpy.context.scene
+            )  # a new node has none, or one whose tree is another
         if not nodes:
             continue
         owner = f"bpy.types.{identifier}"

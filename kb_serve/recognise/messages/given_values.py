@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.index.analysis import key
 from kb_build.symbols.api_names import TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.messages.absent import ANY, as_written
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
 _OBJECT = "Object"
 _SEQUENCES = frozenset({"tuple", "list"})
+_KIND = "_type"  # at the end of the name of what decides which class a pointer takes
 
 
 class GivenValues:
@@ -30,7 +32,23 @@ class GivenValues:
         """What to give in place of a value of another type."""
         for match in forms.first_matches(forms.GIVEN, query):
             wanted, given = match["wanted"] or match["of"], match["given"] or match["none"]
-            recognition.notes += self._what_to_give(wanted, given)
+            setting = self._deciding(query, given)
+            recognition.notes += [setting] if setting else self._what_to_give(wanted, given)
+
+    def _deciding(self, query: str, given: str) -> str:
+        """What to set first so that a pointer takes what was given, where another setting decides it: ``id_type`` which
+        class ``id`` takes. Empty where none does.
+        """
+        for match in forms.first_matches(forms.WRONG_TYPE, query):
+            path = f"{TYPES}{match['path']}"
+            pointer, kinds = self._reader.symbol(path), self._reader.symbol(path + _KIND)
+            if not pointer or not kinds or not self._reader.descends(TYPES + given, TYPES + pointer.target):
+                continue
+            for item in kinds.enum_items:
+                if key(item.name) == key(given):
+                    setting = f"{kinds.name} = {item.identifier!r}"
+                    return f"Set `{setting}` before `{pointer.name}`: it decides which class that takes."
+        return ""
 
     def _what_to_give(self, wanted: str, given: str) -> Iterator[str]:
         """A sentence on what to give for a type that was wanted, as the message names both; none where nothing is

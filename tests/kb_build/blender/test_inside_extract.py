@@ -24,7 +24,7 @@ from kb_build.symbols.flags import (
     refused_nothing,
     usual_default,
 )
-from kb_build.symbols.lines import operator_needs, poll_line, type_text
+from kb_build.symbols.lines import operator_needs, poll_line, shown_when, type_text
 from kb_build.symbols.records import (
     ALSO,
     ENDS_BEFORE,
@@ -413,6 +413,20 @@ def test_sockets_list_the_modes_that_show_them(symbols: dict[str, Symbol]) -> No
     clamped = symbols['bpy.types.ShaderNodeMath.inputs["Value_001"]']
     assert clamped.modes[0].startswith("operation=ADD|SUBTRACT|")
     assert "SQRT" not in clamped.modes[0].split("|")
+
+
+def test_passes_have_sockets_while_their_settings_are_on(symbols: dict[str, Symbol]) -> None:
+    outputs = {
+        symbol.label: symbol
+        for symbol in symbols.values()
+        if symbol.owner == "bpy.types.CompositorNodeRLayers" and symbol.kind == "socket"
+    }
+    assert shown_when(outputs["Image"]) == ""
+    assert shown_when(outputs["Depth"]) == "view_layer.use_pass_z=True"
+    assert outputs["Depth"].subscripts == ('outputs["Depth"]',)
+    assert shown_when(outputs["UV"]) == "view_layer.use_pass_uv=True and scene.render.engine=CYCLES"
+    settings = [re.match(r"view_layer\.(?:\w+\.)?(\w+)=", shown_when(symbol)) for symbol in outputs.values()]
+    assert len({match[1] for match in settings if match}) > 25
 
 
 def test_sockets_say_what_decides_their_type_and_their_names(symbols: dict[str, Symbol]) -> None:

@@ -55,3 +55,11 @@ def test_a_pass_of_the_script_is_its_own(rule_checker: Checker) -> None:
 def test_other_nodes_have_what_outputs_they_have(rule_checker: Checker) -> None:
     code = f"{_START}image = tree.nodes.new('CompositorNodeImage')\nimage.outputs['DiffCol']\n"
     assert rule_checker.check(code, rules=["former-pass"]) == []
+
+
+def test_outputs_that_a_view_layer_shows_are_no_finding(rule_checker: Checker) -> None:
+    outputs = ("Depth", "Mist", "Diffuse Color", "CryptoObject00", "Noisy Image", "a pass of its own")
+    code = f"{_START}" + "\n".join(f"layers.outputs[{name!r}]" for name in outputs)
+    assert rule_checker.check(code) == []
+    bare = code.replace("setattr", "print")
+    assert rule_checker.check(bare) == []

@@ -155,6 +155,34 @@ def test_what_was_only_found_says_it_where_the_question_is_about_it(
     assert [*Practice(reader).of(path, question)]
 
 
+# Baking
+
+
+def baked(kind: str, **given: str) -> list[float]:
+    """The colour of a pixel that a plane with a material is baked to, where Cycles' setting has the bake's type."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples = 1
+    scene.cycles.bake_type = kind
+    scene.world = bpy.data.worlds.new("world")
+    bpy.ops.mesh.primitive_plane_add()
+    material = bpy.data.materials.new("material")
+    bpy.context.object.data.materials.append(material)
+    node = material.node_tree.nodes.new("ShaderNodeTexImage")
+    node.image = bpy.data.images.new("image", 4, 4)
+    material.node_tree.nodes.active = node
+    bpy.ops.object.bake(**given)
+    return list(node.image.pixels[:3])
+
+
+def test_the_operator_bakes_what_its_argument_says(reader: BaseReader) -> None:
+    (note,) = Practice(reader).of("bpy.types.CyclesRenderSettings.bake_type", "")
+    assert "type='AO'" in note
+    assert baked("AO") == baked("NORMAL") == baked("AO", type="COMBINED")
+    assert baked("NORMAL", type="AO") != baked("NORMAL")
+
+
 # Cloth
 
 

@@ -29,6 +29,25 @@ def test_what_does_the_opposite_comes_last(question: str, order: list[str]) -> N
     assert [row.id for row in opposites_last(found, question)] == order
 
 
+@pytest.mark.parametrize(
+    ("question", "last"),
+    [
+        ("quaternion from axis angle", "mathutils.Quaternion.to_axis_angle"),
+        ("axis angle to quaternion", "mathutils.Quaternion.to_axis_angle"),
+        ("matrix from euler", "mathutils.Matrix.to_euler"),
+        ("quaternion to axis angle", "mathutils.Quaternion"),
+        ("matrix to euler", "mathutils.Quaternion"),
+    ],
+)
+def test_what_converts_the_other_way_comes_last(question: str, last: str) -> None:
+    paths = [
+        *("mathutils.Quaternion.to_axis_angle", "mathutils.Matrix.to_euler", "bpy.types.Object.to_mesh"),
+        "mathutils.Quaternion",
+    ]
+    ranked = opposites_last([RankedId(path, 0.8, "found") for path in paths], question)
+    assert ranked[-1].id == last
+
+
 def test_what_was_named_stays() -> None:
     rows = [RankedId(EXPORTER, 1.0, "exact"), RankedId(IMPORTER, 0.8, "found")]
     assert opposites_last(rows, "import") == rows

@@ -217,6 +217,10 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
             "Give the object, not its data: `obj`, whose `.data` is the `Armature`.",
         ),
         (
+            "TypeError: bpy_struct: item.attr = val: DriverTarget.id expected a Object type, not Scene",
+            "Set `id_type = 'SCENE'` before `id`",
+        ),
+        (
             "TypeError: NodeLinks.new(): error with argument 1, \"input\" -  Function.input does not support a 'None' "
             "assignment NodeSocket type",
             "None was given for a `bpy.types.NodeSocket`: `outputs.get(name)` is None where nothing has the name.",

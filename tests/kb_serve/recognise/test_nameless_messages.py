@@ -84,6 +84,7 @@ scene.render.engine = "CYCLES"; mesh.materials.clear(); bpy.ops.object.bake(type
 cycle()
 ob.location = (1, 2, 3, 4)
 bpy.data.objects.new("o", ob)
+bpy.data.objects.new("o", bpy.data.annotations.new("a"))
 bmesh.new().verts[0]
 bmesh.new().from_mesh(ob)
 ob.modifiers.new("b", "BOOLEAN"); bpy.ops.object.modifier_apply(modifier="b")

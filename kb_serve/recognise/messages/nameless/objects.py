@@ -5,6 +5,8 @@ from __future__ import annotations
 from kb_build.symbols.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
+_ANNOTATION = "ID type 'GREASEPENCIL' is not valid for an object"
+
 OBJECTS = (
     NamelessMessage(
         ("selected because it is not in View Layer",),
@@ -37,9 +39,22 @@ OBJECTS = (
         "The object must be in the view layer and computed: link it, then `bpy.context.view_layer.update()`.",
     ),
     NamelessMessage(
+        (_ANNOTATION,),
+        (f"{T}BlendDataGreasePencilsV3.new", f"{T}BlendDataObjects.new"),
+        "`bpy.data.grease_pencils` holds annotations in this Blender. An object takes what is made by "
+        "`bpy.data.grease_pencils_v3.new(name)`.",
+    ),
+    NamelessMessage(
+        (_ANNOTATION,),
+        (f"{T}BlendDataGreasePencils.new", f"{T}BlendDataObjects.new"),
+        "No object has annotations. It takes what is made by `bpy.data.grease_pencils.new(name)`.",
+        lacking=f"{T}BlendDataGreasePencilsV3.new",
+    ),
+    NamelessMessage(
         ("ID type '", "is not valid for an object"),
         (f"{T}BlendDataObjects.new", f"{T}ID.copy"),
         "The second argument is the data, not an object: `bpy.data.objects.new(name, obj.data)`. `obj.copy()` "
         "copies an object.",
+        without=(_ANNOTATION,),
     ),
 )
