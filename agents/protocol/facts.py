@@ -89,7 +89,8 @@ class RigidBodyFacts(_Frozen):
     """A rigid body. ``active``: the solver moves it; ``kinematic``: its animation moves it instead, all the time.
 
     ``off_centre``: how far the middle of its own mesh is from its origin, on which primitive collision shapes are
-    centred, in metres.
+    centred; ``origin_outside``: how far its origin, its centre of mass, is outside the bounds of that mesh, 0 for the
+    parts of a compound. Metres.
     """
 
     active: bool
@@ -97,6 +98,7 @@ class RigidBodyFacts(_Frozen):
     enabled: bool = True
     shape: str = ""
     off_centre: float = 0.0
+    origin_outside: float = 0.0
 
 
 class ObjectFacts(_Frozen):

@@ -83,4 +83,6 @@ class Rule:
     def undecided(self, objects: tuple[str, ...], reason: object, **more: Any) -> Finding:
         """A finding that the rule could not be decided for ``objects``, and why."""
         message = f"{', '.join(map(repr, objects)) or 'The scene'} could not be checked: {reason}."
-        return Finding(self.id, self.severity, objects, message, self.fix, outcome="undecided", **more)
+        return Finding(
+            self.id, self.severity, objects, message, more.pop("fix", self.fix), outcome="undecided", **more
+        )

@@ -93,6 +93,9 @@ class Tolerances:
         "/frame",
         "keyframes per frame from which keys count as an imitated simulation (at least five keys)",
     )
+    origin_share: float = _tolerance(
+        0.05, "", "largest way of a body's origin outside its mesh, as a share of its diagonal"
+    )
     out_of_frame: float = _tolerance(0.20, "", "largest share of a subject outside the picture")
     frame_cover: float = _tolerance(
         0.01, "", "smallest share of the picture that a subject covers", least=True

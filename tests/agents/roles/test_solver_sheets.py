@@ -150,6 +150,22 @@ def pose():
 
 over(60, pose)
 """
+# A crate that stands on the floor, with its origin a metre beside its mesh, and a rider that is parented to it.
+STANDING = """
+floor = box("Floor", (4, 4, 0.2), (0, 0, -0.1))
+crate = box("Crate", (0.3, 0.3, 0.3), (0, 0, 0.15))
+for vertex in crate.data.vertices:
+    vertex.co.x += 1
+rider = box("Rider", (0.1, 0.1, 0.1), (1, 0, 0.35))
+rider.parent, rider.matrix_parent_inverse = crate, crate.matrix_world.inverted()
+before = points(crate), points(rider)
+centre(crate)
+bpy.context.view_layer.update()
+stayed = max((a - b).length for one, old in zip((crate, rider), before) for a, b in zip(points(one), old))
+rigid(floor, shape="BOX", passive=True)
+rigid(crate, shape=SHAPE)
+stayed, over(24, lambda: max((a - b).length for a, b in zip(points(crate), before[0])))
+"""
 LIQUID = """
 import bmesh
 
@@ -291,6 +307,13 @@ def test_a_rigid_body_rests_and_a_hinge_stops_at_its_limit(blender: LiveSession)
     assert max(fallen) < 1.2
 
 
+@pytest.mark.parametrize("shape", ["BOX", "CONVEX_HULL", "MESH"])
+def test_a_rigid_body_that_stands_stays(blender: LiveSession, shape: str) -> None:
+    moved, seen = tried(blender, "rigid", STANDING.replace("SHAPE", repr(shape)))
+    assert moved == pytest.approx(0, abs=1e-5), "only the origin moves"
+    assert max(seen) < 0.0005
+
+
 def test_a_liquid_spreads_in_its_domain_and_keeps_its_volume(blender: LiveSession) -> None:
     seen = tried(blender, "liquid", LIQUID)
     assert all(0.7 < volume < 1.4 for volume, _, _ in seen)
@@ -308,6 +331,15 @@ def test_smoke_rises_from_its_source_below_the_lid(blender: LiveSession) -> None
     assert 0 < amounts[0] < amounts[-1]
     assert tops[0] < 0.35
     assert tops[0] + 0.1 < tops[-1] <= 1
+
+
+def test_a_gas_has_no_walls_as_its_sheet_says(blender: LiveSession) -> None:
+    assert "The lid and the sides are open" in sheet("gas")
+    borders = """
+settings = gas(box("Domain", (1, 1, 1), (0, 0, 0)), ball("Source", 0.1, (0, 0, 0)))
+[name for name in dir(settings) if name.startswith("use_collision_border_") and getattr(settings, name)]
+"""
+    assert tried(blender, "gas", borders) == []
 
 
 def test_particles_come_to_rest_on_a_floor_and_stay(blender: LiveSession) -> None:

@@ -30,3 +30,10 @@ def played_curves(block):
     strips = [strip for track in animation.nla_tracks if not track.mute for strip in track.strips]
     players = [animation, *(strip for strip in strips if not strip.mute)]
     return [curve for player in players for curve in action_curves(player)]
+
+
+def varies(curve):
+    """Whether an f-curve has different values over time."""
+    if len(curve.modifiers) or len(curve.sampled_points):
+        return True
+    return len({point.co[1] for point in curve.keyframe_points}) > 1

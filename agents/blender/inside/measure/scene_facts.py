@@ -8,9 +8,10 @@ import numpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from ..blend.fcurves import curves_of, played_curves
+from ..blend.fcurves import played_curves, varies
 from ..blend.fluids import domain_of, is_empty_domain
 from ..blend.protocol_tags import CONTACT, ROLE, ROOT, STRICT_GROUNDING
+from ..physics.body_centres import is_kinematic, off_centre, origin_outside
 from ..physics.caches import find_caches
 
 _TRANSFORMS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
@@ -205,14 +206,13 @@ def _rigid_body(obj):
     body = obj.rigid_body
     if body is None:
         return None
-    # A body that is released during the timeline is moved by the solver from then on.
-    switched = any(curve.data_path == "rigid_body.kinematic" and _varies(curve) for curve in curves_of(obj))
     return {
         "active": body.type == "ACTIVE",
-        "kinematic": bool(body.kinematic) and not switched,
+        "kinematic": is_kinematic(obj),
         "enabled": bool(body.enabled),
         "shape": body.collision_shape,
-        "off_centre": _off_centre(obj),
+        "off_centre": _number(off_centre(obj)),
+        "origin_outside": _number(origin_outside(obj)),
     }
 
 
@@ -256,23 +256,9 @@ def _joint(joint):
     }
 
 
-def _off_centre(obj):
-    """How far the middle of an object's box is from its origin, in metres."""
-    corners = numpy.array(obj.bound_box, float)
-    lengths = numpy.linalg.norm(numpy.array(obj.matrix_world, float)[:3, :3], axis=0)
-    return _number(numpy.linalg.norm((corners.min(axis=0) + corners.max(axis=0)) / 2 * lengths))
-
-
 def _changing_curves(block):
     """The f-curves that change something over time: of the action, and of what is played in NLA tracks."""
-    return [curve for curve in played_curves(block) if not curve.mute and _varies(curve)]
-
-
-def _varies(curve):
-    if len(curve.modifiers) or len(curve.sampled_points):
-        return True
-    values = {point.co[1] for point in curve.keyframe_points}
-    return len(values) > 1
+    return [curve for curve in played_curves(block) if not curve.mute and varies(curve)]
 
 
 def _keys(obj):

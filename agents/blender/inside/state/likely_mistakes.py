@@ -5,14 +5,14 @@ import math
 import os
 
 import bpy
-from mathutils import Vector
 
 from ..blend.names import listed
+from ..physics.body_centres import CENTRED_SHAPES, is_kinematic, off_centre, origin_outside
 from .rna_values import number, text
 
 MOST_NAMES = 6
-_CENTRED_SHAPES = frozenset({"BOX", "SPHERE", "CAPSULE", "CYLINDER", "CONE"})
 _OFF, _OFF_SHARE = 0.001, 0.01  # metres, and share of its size, that a shape may be off its mesh
+_OUTSIDE_SHARE = 0.05  # of its size, that the origin of a body may be outside its mesh
 _MOST_BODIES = 500
 
 
@@ -46,25 +46,36 @@ def _invalid_setup(scene, objects):
         out = [obj for obj in bodies if obj.name_full not in inside]
         if out:
             yield f"Rigid bodies outside the rigid-body world's collection, so not simulated: {_names(out)}."
-    yield from _shapes_off_their_meshes(bodies)
+    yield from _bodies_off_their_meshes(bodies)
     if scene.camera is None and any(obj.type == "CAMERA" for obj in objects):
         yield "The scene has cameras, but none is active (scene.camera)."
     if scene.frame_start > scene.frame_end:
         yield f"The frame range is empty: {scene.frame_start} to {scene.frame_end}."
 
 
-def _shapes_off_their_meshes(bodies):
-    """Primitive collision shapes are centred on the origin, wherever the mesh is."""
-    off = []
+def _bodies_off_their_meshes(bodies):
+    """A body turns about its origin, and a primitive collision shape is centred on it, wherever the mesh is."""
+    outside, off = [], []
     for obj in bodies[:_MOST_BODIES]:
-        shape = obj.rigid_body.collision_shape
-        if shape not in _CENTRED_SHAPES or obj.type != "MESH" or not _is_finite(obj.matrix_world):
+        if obj.type != "MESH" or not _is_finite(obj.matrix_world):
             continue
-        corners = [Vector(corner) for corner in obj.bound_box]
-        middle = obj.matrix_world.to_3x3() @ (sum(corners, Vector()) / len(corners))
-        size = obj.dimensions.length
-        if middle.length > max(_OFF, _OFF_SHARE * size):
-            off.append(f"{shape} of {text(obj.name)!r} by {number(round(middle.length, 4))} m")
+        body, size = obj.rigid_body, obj.dimensions.length
+        if (
+            body.enabled
+            and body.type == "ACTIVE"
+            and not is_kinematic(obj)
+            and (gap := origin_outside(obj)) > _OUTSIDE_SHARE * size
+        ):
+            outside.append(f"{text(obj.name)!r} by {number(round(gap, 4))} m")
+        elif body.collision_shape in CENTRED_SHAPES and (way := off_centre(obj)) > max(
+            _OFF, _OFF_SHARE * size
+        ):
+            off.append(f"{body.collision_shape} of {text(obj.name)!r} by {number(round(way, 4))} m")
+    if outside:
+        yield (
+            "A rigid body's centre of mass is its origin; here that is outside the mesh, so that it falls and turns "
+            f"as nothing real does: {listed(outside, MOST_NAMES)}. Set the origin to the middle of its bounds."
+        )
     if off:
         yield (
             "Primitive collision shapes are centred on the origin; here that is not the middle of the mesh: "

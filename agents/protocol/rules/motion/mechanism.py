@@ -81,17 +81,29 @@ def _wrong_solver(context: RuleContext, obj: LogicalObject, kind: str) -> Iterat
         )
     for partner, message, fix in missing_partners(context, obj, solver):
         yield R15.finding((obj.name, partner), message, fix=fix)
-    yield from _shapes_off_their_meshes(context, obj)
+    yield from _bodies_off_their_meshes(context, obj)
 
 
-def _shapes_off_their_meshes(context: RuleContext, obj: LogicalObject) -> Iterator[Finding]:
-    """Findings for bodies whose collision shape is centred on an origin that is not the middle of the mesh."""
+def _bodies_off_their_meshes(context: RuleContext, obj: LogicalObject) -> Iterator[Finding]:
+    """Findings for bodies with an origin outside the mesh, or with a shape centred on one that is not its middle."""
+    tolerances = context.tolerances
     for item in obj.members:
         body = item.rigid_body
-        if body is None or not body.enabled or body.shape not in _CENTRED_SHAPES:
+        if body is None or not body.enabled:
             continue
-        most = context.tolerances.contact_gap(item.box.diagonal if item.box else 0.0)
-        if body.off_centre > most:
+        size = item.box.diagonal if item.box else 0.0
+        is_simulated = body.active and not body.kinematic
+        if is_simulated and body.origin_outside > (most := tolerances.origin_share * size):
+            yield R15.finding(
+                (item.name, obj.name),
+                f"The origin of {item.name!r}, its centre of mass, is {body.origin_outside:.3f} m outside its mesh.",
+                fix="Move the origin to the middle of the mesh (its data one way, the object the other), and bake "
+                "again.",
+                measured=body.origin_outside,
+                tolerance=most,
+                unit="m",
+            )
+        elif body.shape in _CENTRED_SHAPES and body.off_centre > (most := tolerances.contact_gap(size)):
             yield R15.finding(
                 (item.name, obj.name),
                 f"The collision shape of {item.name!r}, a {body.shape.lower()}, is centred on its origin, "
@@ -107,11 +119,11 @@ R15 = Rule(
     "R15",
     "mechanism",
     "hard",
-    "What deformation_kind declares is set up: solver on, partners and fields in it, collision shapes on their meshes; "
+    "What deformation_kind declares is set up: solver on, partners and fields in it, bodies centred in meshes; "
     "no keys imitate it.",
     "A motion that only looks simulated cannot be changed: move the ball, and the dominoes fall as before.",
     "Set up the declared solver and its partners, and remove what imitates it.",
     _wrong_mechanisms,
-    tolerances=("dense_keys", *CONTACT),
+    tolerances=("dense_keys", "origin_share", *CONTACT),
 )
 RULES = (R15,)

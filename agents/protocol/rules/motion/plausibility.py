@@ -39,6 +39,10 @@ _IMPACT = (
 )
 _MIN_FRAMES = 3  # that a fall is fitted to
 _HALVES_FROM = 8  # frames from which both halves must be falls: eased keyframes are one only on average
+_FREE_FALL = (
+    "Let it fall freely, touching nothing, for that many frames of the phase: from higher up, or with what it lands on "
+    "or is hit by farther away."
+)
 _MIN_SINKING = 4  # frames that a cloth has to fall before it is judged
 _SINKING = 0.35  # share of a free fall below which a cloth that nothing holds sinks as if in syrup
 _WITHOUT_SURFACE = frozenset({"emitter", "fluid"})  # roles that colliders stop by other means
@@ -62,7 +66,8 @@ def _judge(context: RuleContext, measures: Measures) -> Iterator[Finding]:
             try:
                 yield from check(context, measures, place, phase)
             except Unmeasured as reason:
-                yield T6.undecided((phase.actor,), reason)
+                fix = _FREE_FALL if phase.kind == "fall" else T6.fix
+                yield T6.undecided((phase.actor,), reason, fix=fix)
     for actor in dict.fromkeys(phase.actor for _, phase in planned_phases(context)):
         yield from _tunnels(context, measures, actor)
 
@@ -106,7 +111,8 @@ def _fall(context: RuleContext, measures: Measures, place: int, phase: MotionPha
     first, last = _flight(context, motion, (max(onset.frame, phase.start) + 1, phase.end), touching)
     if last - first + 1 < _MIN_FRAMES:
         raise Unmeasured(
-            f"in {phase.name!r} it is in the air for {max(0, last - first + 1)} frames; a fall needs {_MIN_FRAMES}"
+            f"from frame {phase.start} to {phase.end} ({phase.name!r}) it is in the air, untouched, for "
+            f"{max(0, last - first + 1)} frames; a fall needs {_MIN_FRAMES}"
         )
     acceleration = min(
         (_acceleration(context, motion, (first, last), origins=origins) for origins in (False, True)),

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from agents.protocol.judging.arrivals import arrival, arrival_request, arrive_at, caused_after
 from agents.protocol.judging.measured_motion import measured_motion
 from agents.protocol.judging.phases import (
     RESTING,
@@ -15,12 +16,12 @@ from agents.protocol.judging.phases import (
     rest_speed,
     rest_start,
 )
-from agents.protocol.judging.solver_advice import unrest
+from agents.protocol.judging.solver_advice import from_the_start, unrest
 from agents.protocol.measures.requests import Measures, Request, Unmeasured
 from agents.protocol.rule import Rule, RuleContext
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from agents.plan.motion import MotionPhase
     from agents.protocol.findings import Finding
@@ -28,7 +29,11 @@ if TYPE_CHECKING:
 
 
 def _requests(context: RuleContext) -> Iterator[Request[Any]]:
-    return path_requests(context, *sorted(RESTING))
+    yield from path_requests(context, *sorted(RESTING))
+    for _, phase in planned_phases(context, *sorted(RESTING)):
+        following = caused_after(context, phase)
+        if following is not None and (request := arrival_request(context, following)):
+            yield request
 
 
 def _judge(context: RuleContext, measures: Measures) -> Iterator[Finding]:
@@ -36,13 +41,37 @@ def _judge(context: RuleContext, measures: Measures) -> Iterator[Finding]:
         try:
             motion = measured_motion(context, measures, phase.actor)
             first = rest_start(phase, motion.fps) if phase.kind == "settle" else phase.start
-            yield from _unrest(context, motion, (place, phase), first)
+            yield from _unrest(context, measures, motion, (place, phase), first)
         except Unmeasured as reason:
             yield T7.undecided((phase.actor,), reason)
 
 
+def _origin(
+    context: RuleContext, measures: Measures, phase: MotionPhase, frames: Sequence[int]
+) -> tuple[str, str]:
+    """What a motion at these frames of a rest comes from, as far as that is known, and what to do about it."""
+    told: list[str] = []
+    fixes: list[str] = []
+    start = context.facts.frame_start
+    if frames[0] == start + 1 and (fix := from_the_start(context, phase.actor)):
+        told.append(f" It moves at frame {frames[0]}, as the simulation begins.")
+        fixes.append(fix)
+    elif len(frames) > 1:
+        told.append(f" It moves from frame {frames[0]} on.")
+    following = caused_after(context, phase)
+    met = arrival(context, measures, following) if following is not None else None
+    if following is not None and met is not None and met[1] <= frames[-1]:
+        told.append(f" {met[0]!r}, which causes {following.name!r}, touches it at frame {met[1]}.")
+        fixes.append(arrive_at(met[0], following.start))
+    return "".join(told), " ".join(fixes) or unrest(context, phase.actor) or T7.fix
+
+
 def _unrest(
-    context: RuleContext, motion: MeasuredMotion, indexed: tuple[int, MotionPhase], first: int
+    context: RuleContext,
+    measures: Measures,
+    motion: MeasuredMotion,
+    indexed: tuple[int, MotionPhase],
+    first: int,
 ) -> Iterator[Finding]:
     place, phase = indexed
     if first >= phase.end:
@@ -57,14 +86,15 @@ def _unrest(
         raise Unmeasured(f"it does not exist from frame {first} to {phase.end}")
     worst, most = int(np.nanargmax(speeds)), rest_speed(context, motion)
     if speeds[worst] > most:
+        told, fix = _origin(context, measures, phase, (first + 1 + np.flatnonzero(speeds > most)).tolist())
         yield T7.finding(
             (phase.actor,),
-            f"{label} {subject} at {speeds[worst]:.3g} m/s.",
+            f"{label} {subject} at {speeds[worst]:.3g} m/s.{told}",
             frame=first + 1 + worst,
             measured=float(speeds[worst]),
             tolerance=most,
             unit="m/s",
-            fix=unrest(context, phase.actor) or T7.fix,
+            fix=fix,
         )
     elif (
         phase.kind == "hold"
@@ -84,15 +114,16 @@ def _unrest(
         return
     rates = np.linalg.norm(motion.step_rotations(first, phase.end), axis=1) * motion.fps
     worst = int(np.argmax(rates))
-    if rates[worst] > context.tolerances.rest_turn:
+    if rates[worst] > (slow := context.tolerances.rest_turn):
+        told, fix = _origin(context, measures, phase, (first + 1 + np.flatnonzero(rates > slow)).tolist())
         yield T7.finding(
             (phase.actor,),
-            f"{label} it turns at {rates[worst]:.3g} rad/s.",
+            f"{label} it turns at {rates[worst]:.3g} rad/s.{told}",
             frame=first + 1 + worst,
             measured=float(rates[worst]),
-            tolerance=context.tolerances.rest_turn,
+            tolerance=slow,
             unit="rad/s",
-            fix=unrest(context, phase.actor) or T7.fix,
+            fix=fix,
         )
 
 

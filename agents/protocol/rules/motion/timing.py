@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from agents.protocol.judging.measured_motion import measured_motion, mesh_names, path_request
+from agents.protocol.judging import solver_advice
+from agents.protocol.judging.arrivals import arrival, arrival_request, arrive_at, meeting
+from agents.protocol.judging.measured_motion import measured_motion, path_request
 from agents.protocol.judging.phases import (
     RESTING,
     actual_span,
@@ -17,9 +19,7 @@ from agents.protocol.judging.phases import (
     phase_label,
     planned_phases,
 )
-from agents.protocol.judging.sizes import contact_gap
 from agents.protocol.judging.vectors import angle_between
-from agents.protocol.measures.motion import ContactFramesRequest
 from agents.protocol.measures.requests import Measures, Request, Unmeasured
 from agents.protocol.rule import NotApplicable, Rule, RuleContext
 from agents.protocol.tolerances import CONTACT
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from agents.protocol.judging.vectors import Array
 
 _RETURNING = frozenset({"swing", "bounce"})  # judged by how far they get, not where they end
+_WITH_ITS_CAUSE = 2  # frames between a contact and a motion that comes from it
 
 
 # Onset
@@ -49,6 +50,8 @@ def _moving_phases(context: RuleContext) -> list[tuple[int, MotionPhase]]:
 def _onset_requests(context: RuleContext) -> Iterator[Request[Any]]:
     for _, phase in _moving_phases(context):
         if request := path_request(context, phase.actor):
+            yield request
+        if request := arrival_request(context, phase):
             yield request
 
 
@@ -73,16 +76,23 @@ def _wrong_onsets(context: RuleContext, measures: Measures) -> Iterator[Finding]
                 measured=peak,
                 tolerance=least,
                 unit="m/s",
+                fix=solver_advice.onset(context, phase.actor) or T2.fix,
             )
         elif abs(late := onset.frame - phase.start) > most:
+            arrived, fix = "", solver_advice.onset(context, phase.actor) or T2.fix
+            met = arrival(context, measures, phase)
+            if met is not None and abs(met[1] - onset.frame) <= _WITH_ITS_CAUSE:
+                arrived = f" {met[0]!r}, which causes it, touches it at frame {met[1]}."
+                fix = arrive_at(met[0], phase.start)
             yield T2.finding(
                 (phase.actor,),
                 f"{phase_label(place, phase)} starts to move at frame {onset.frame}, "
-                f"{abs(late)} frames {'late' if late > 0 else 'early'}; the plan says frame {phase.start}.",
+                f"{abs(late)} frames {'late' if late > 0 else 'early'}; the plan says frame {phase.start}.{arrived}",
                 frame=onset.frame,
                 measured=float(late),
                 tolerance=most,
                 unit="frames",
+                fix=fix,
             )
 
 
@@ -102,20 +112,12 @@ def _effects(context: RuleContext) -> list[tuple[int, MotionPhase, MotionPhase]]
     return effects
 
 
-def _meeting(context: RuleContext, effect: MotionPhase, cause: MotionPhase) -> ContactFramesRequest | None:
-    """The request for when the actors of cause and effect first touch; None where they cannot."""
-    a, b = mesh_names(context, cause.actor), mesh_names(context, effect.actor)
-    if effect.actor == cause.actor or not a or not b:
-        return None
-    return ContactFramesRequest(a, b, cause.start, effect.end, contact_gap(context, a, b), once=True)
-
-
 def _order_requests(context: RuleContext) -> Iterator[Request[Any]]:
     for _, effect, cause in _effects(context):
         for actor in (effect.actor, cause.actor):
             if request := path_request(context, actor):
                 yield request
-        if request := _meeting(context, effect, cause):
+        if request := meeting(context, effect, cause):
             yield request
 
 
@@ -154,8 +156,8 @@ def _out_of_order(
             tolerance=most,
             unit="frames",
         )
-    meeting = _meeting(context, effect, cause)
-    met = measures[meeting].frames if meeting else ()
+    touching = meeting(context, effect, cause)
+    met = measures[touching].frames if touching else ()
     # What touches when the cause begins may have touched long before.
     if met and met[0] > cause.start and met[0] - began.frame > most:
         yield T3.finding(
@@ -213,6 +215,7 @@ def _wrong_extents(context: RuleContext, measures: Measures) -> Iterator[Finding
                     measured=measured,
                     tolerance=tolerance,
                     unit=unit,
+                    fix=solver_advice.extent(context, phase.actor) or T4.fix,
                 )
 
 

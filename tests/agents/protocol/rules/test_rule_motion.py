@@ -365,6 +365,7 @@ def test_a_fall_that_is_too_short_to_be_told_is_undecided(session: LiveSession) 
     found = judged(session, "T6", script, fall, roles=ROLES, last=60)
     finding = the_finding(found)
     assert (finding.outcome, finding.objects) == ("undecided", ("Crate",))
+    assert finding.fix.startswith("Let it fall freely")
 
 
 # T6: tunnels
@@ -613,3 +614,47 @@ def test_what_a_jump_left_behind_is_not_taken_for_a_simulation(session: LiveSess
         build(session, f"{CURTAIN}\nbpy.context.view_layer.update()\n{jump}")
         ways.append(the_finding(verified(session, "T4", plan)).measured)
     assert ways[0] == pytest.approx(ways[1], rel=1e-3)
+
+
+# What a finding says a motion comes from
+
+
+HIT = """
+scene.frame_start, scene.frame_end = 1, 40
+scene.gravity = (0, 0, 0)
+rod = thing("Rod", box("Nose", (-1, -0.1, -0.1), (0, 0.1, 0.1)))
+face = box("Face", (-0.05, -0.1, -0.5), (0.05, 0.1, 0.5), at=(0.05, 0, 0))
+thing("Tile", face)
+key(rod, 1, location=(-1, 0, 0))
+key(rod, 21, location=(0.5, 0, 0))
+linear(rod)
+nose = bpy.data.objects["Nose"]
+rigid(nose, "PASSIVE", kinematic=True)
+rigid(face)
+"""
+HIT_ROLES = {"Rod": "keyframed", "Tile": "rigid"}
+PUSHED = {"name": "push", **phase("Rod", "translate", 1, 21)}
+
+
+def test_a_cause_that_arrives_too_early_is_told(session: LiveSession) -> None:
+    """The rod comes 7.5 cm nearer a frame, and touches between frames 14 and 15."""
+    build(session, HIT)
+    session.use(BAKE)
+    rest = phase("Tile", "hold", 1, 24)
+    slide = {"name": "slide", **phase("Tile", "slide", 24, 40, cause="push", extent=9.0)}
+    made = a_motion(PUSHED, rest, slide, roles=HIT_ROLES, last=40)
+    for rule in ("T2", "T7"):
+        finding = next(one for one in verified(session, rule, made).findings if one.rule == rule)
+        assert "touches it at frame 15" in finding.message
+        assert finding.fix.startswith("Let 'Rod' arrive at frame 24")
+    assert "It moves from frame 15 on." in finding.message
+    (far,) = verified(session, "T4", made).findings
+    assert "keyframe" not in far.fix
+
+
+def test_a_body_that_its_margins_lift_is_told_as_the_simulation_begins(session: LiveSession) -> None:
+    script = DROP.replace("HEIGHT", "0.5") + RIGID
+    script += "for one in (crate, bpy.data.objects['Slab']):\n    one.rigid_body.collision_margin = 0.001\n"
+    finding = the_finding(judged(session, "T7", script, phase("Crate", "hold", 1, 20), roles=ROLES, last=60))
+    assert "It moves at frame 2, as the simulation begins." in finding.message
+    assert "`collision_margin` 0" in finding.fix

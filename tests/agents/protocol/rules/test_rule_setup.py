@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from scenes import a_motion, build, the_finding, verified
 
+from agents.blender.tools.scene_state import TOOL as STATE
 from agents.plan.scene import Joint
 
 if TYPE_CHECKING:
@@ -107,6 +108,56 @@ for vertex in ball_.data.vertices:
     assert finding.measured == pytest.approx(0.028, abs=1e-4)
     session.run('bpy.data.objects["Ball"].rigid_body.collision_shape = "CONVEX_HULL"')
     assert verified(session, "R15", plan("rigid")).passed == ("R15",)
+
+
+# How the mesh lies to its origin, what the body is, and whether its origin is where no centre of mass can be.
+ORIGINS = {
+    "far beside the mesh": ("z + 1", "", True),
+    "at the foot of the mesh": ("z + 0.2", "", False),
+    "a little below the mesh": ("z + 0.22", "", False),
+    "of a passive body": ("z + 1", 'body.type = "PASSIVE"', False),
+    "of a keyed body": ("z + 1", "body.kinematic = True", False),
+    "of a compound": ("z + 1", 'body.collision_shape = "COMPOUND"', False),
+    "of a part of a compound": (
+        "z + 1",
+        """
+frame = box("Frame", (-1, -1, 0), (1, 1, 1))
+scene.collection.objects.link(frame)
+rigid(frame)
+frame.rigid_body.collision_shape = "COMPOUND"
+ball_.parent = frame
+""",
+        False,
+    ),
+}
+
+
+@pytest.mark.parametrize(("height", "change", "is_wrong"), ORIGINS.values(), ids=ORIGINS)
+def test_the_origin_of_a_simulated_body_is_in_its_mesh(
+    session: LiveSession, height: str, change: str, is_wrong: bool
+) -> None:
+    build(
+        session,
+        f"""{TABLE}{ACTORS["rigid"]}{PARTNERS["rigid"]}
+body = ball_.rigid_body
+body.collision_shape = "CONVEX_HULL"
+for vertex in ball_.data.vertices:
+    z = vertex.co.z
+    vertex.co.z = {height}
+{change}
+""",
+    )
+    notes = [note for note in session.use(STATE).data.get("notes", ()) if "centre of mass" in note]
+    report = verified(session, "R15", None)
+    told = [finding for finding in report.findings if "centre of mass" in finding.message]
+    if not is_wrong:
+        assert not told
+        assert not notes
+        return
+    (finding,) = told
+    assert finding.objects == ("Ball", "Actor")
+    assert finding.measured == pytest.approx(0.8, abs=0.01)
+    assert notes[0].endswith("'Ball' by 0.8 m. Set the origin to the middle of its bounds.")
 
 
 def test_a_field_has_strength_and_reaches_what_it_is_to_move(session: LiveSession) -> None:
