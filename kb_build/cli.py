@@ -119,7 +119,11 @@ def _roles(_context: click.Context, _parameter: click.Parameter, value: str | No
 @click.option("--model", help="The model that claude's summaries are made with.")
 @click.option("--require", callback=_roles, metavar="ROLES", help="Fail without: manual, guides or both.")
 @click.option("--jobs", type=click.IntRange(1, 64), default=2, show_default=True, help="Processes at most.")
-@click.option("--force", is_flag=True, help="Build even if nothing has changed.")
+@click.option(
+    "--force",
+    is_flag=True,
+    help="Build even if nothing has changed, or if the new base lacks pages that the old one has.",
+)
 @click.option("--offline", is_flag=True, help="Download no documentation.")
 @click.option("--fresh", is_flag=True, help="Download documentation again that was downloaded before.")
 @click.option("--out", type=OutputFile(), help="Write the base to this file.")
