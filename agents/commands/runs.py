@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from simworlds.terminal.finite_range import FiniteRange
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
     from types import FrameType
@@ -51,10 +53,8 @@ def _options(*options: Callable[[Command], Command]) -> Callable[[Command], Comm
 
 
 _limits = _options(
-    click.option(
-        "--max-cost", type=click.FloatRange(0), metavar="USD", help="Stop before the run costs more."
-    ),
-    click.option("--max-minutes", type=click.FloatRange(0, min_open=True), help="Stop after this time."),
+    click.option("--max-cost", type=FiniteRange(0), metavar="USD", help="Stop before the run costs more."),
+    click.option("--max-minutes", type=FiniteRange(0, min_open=True), help="Stop after this time."),
     click.option("--quiet", is_flag=True, help="Print only the outcome."),
 )
 _model = _options(
@@ -80,7 +80,7 @@ _model = _options(
 _RENDER = (
     click.option(
         "--render-minutes",
-        type=click.FloatRange(0, min_open=True),
+        type=FiniteRange(0, min_open=True),
         help="Time for a film; its samples and size are fitted to it.  [default: what --max-minutes leaves, else 20]",
     ),
     click.option(
@@ -285,7 +285,7 @@ def _work(
 ) -> None:
     from agents.loop.errors import RunError  # noqa: PLC0415 - not for --help
     from agents.loop.reducer import read_run_state  # noqa: PLC0415
-    from agents.loop.session import RunSession, Stop  # noqa: PLC0415
+    from agents.loop.session import RunSession, Stop, resume_command  # noqa: PLC0415
     from agents.views.live_view import RunView, make_view  # noqa: PLC0415
     from agents.views.report.early import ReportWriter  # noqa: PLC0415
     from agents.views.report.page import write_report  # noqa: PLC0415
@@ -307,7 +307,7 @@ def _work(
         if path is not None and path.exists():
             click.echo(path)
     if ended.how in ("stopped", "failed") and ended.again:
-        click.echo(f"Continue with: simworlds resume {root}", err=True)
+        click.echo(f"Continue with: {resume_command(root)}", err=True)
     sys.exit(EXITS[ended.how])
 
 
