@@ -235,11 +235,15 @@ def verify(version: str | None, reference: Path | None, live: bool, as_json: boo
     VERSION is 5.1, or a base's path (default: the newest base). The exit code is 1 when something is wrong.
     """
     from kb_build.verify import verify_base  # noqa: PLC0415 - only here
+    from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
     bases = list(built_bases(home_folder()).values())
     if version is None and not bases:
         raise KBBuildError(f"There is no knowledge base yet. {how_to_get(USUAL)}")
-    verification = verify_base(_base(version) if version else bases[-1], reference, live=live)
+    base = _base(version) if version else bases[-1]
+    with shown_progress(in_logs=False) as progress:
+        progress(f"Checking {base.name}", 0, None)
+        verification = verify_base(base, reference, live=live)
     click.echo(json.dumps(verification.as_json(), indent=2) if as_json else "\n".join(verification.lines()))
     sys.exit(0 if verification.sound else 1)
 

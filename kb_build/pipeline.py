@@ -14,7 +14,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from kb_build.base_file import read_meta
+from kb_build.base_file import read_meta, refuse_folder
 from kb_build.blender.extractor import extract_api
 from kb_build.digests import Digests
 from kb_build.errors import ExtractError, SourceError, StoreError
@@ -120,7 +120,7 @@ def build(
     began = time.perf_counter()
     runtime = find_runtime(version, home=home, blender_exe=options.blender_exe, progress=progress)
     work = _Build(options, home, progress, runtime)
-    _check_target(work.path)
+    refuse_folder(work.path)
     before = _sources_before(work.path)
     _find_sources(work, before)
     _keep_fuller(work, before)
@@ -172,14 +172,6 @@ def _paused_collector() -> Generator[None]:
     finally:
         if enabled:
             gc.enable()
-
-
-def _check_target(path: Path) -> None:
-    """Tells at once what would otherwise be found out when the base is written."""
-    if path.is_dir():
-        raise StoreError(
-            f"{path} is a folder, where the base is to be a file. Remove it, or build with --out FILE"
-        )
 
 
 def _keep_fuller(work: _Build, before: Mapping[str, Origin]) -> None:

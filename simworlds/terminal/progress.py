@@ -79,10 +79,10 @@ class _ProgressBar:
 
 
 @contextmanager
-def shown_progress() -> Generator[Progress]:
-    """The progress that fits where stderr goes."""
+def shown_progress(*, in_logs: bool = True) -> Generator[Progress]:
+    """The progress that fits where stderr goes. Without ``in_logs``, for what takes seconds, only on a terminal."""
     if not is_terminal(sys.stderr):
-        yield _ProgressLines()
+        yield _ProgressLines() if in_logs else silent
         return
     bar = _ProgressBar()
     try:

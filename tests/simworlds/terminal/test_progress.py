@@ -10,6 +10,8 @@ import sys
 import pytest
 from places import REPO
 
+from simworlds.terminal.progress import shown_progress
+
 pty = pytest.importorskip("pty")
 
 _WORK = """
@@ -60,6 +62,12 @@ def test_the_clock_goes_on_while_a_step_works(columns: int, environment: dict[st
     assert len(set(re.findall("[\u2800-\u28ff]", shown))) >= 4
     assert "seen while it works" in shown
     assert shown.endswith("\x1b[2K")  # the line is wiped
+
+
+def test_what_takes_seconds_says_nothing_in_a_log(capsys: pytest.CaptureFixture[str]) -> None:
+    with shown_progress(in_logs=False) as progress:
+        progress("Writing", 1, 2)
+    assert capsys.readouterr().err == ""
 
 
 def test_elsewhere_it_is_lines() -> None:
