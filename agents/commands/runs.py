@@ -226,11 +226,15 @@ def show(run: Path, *, report: bool) -> None:
     from agents.views.report.page import write_report  # noqa: PLC0415
     from agents.views.run_list import shown  # noqa: PLC0415
     from simworlds.terminal.console import Console  # noqa: PLC0415 - not for --help
+    from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
     try:
         Console(sys.stdout).print(shown(run))
         if report:
-            click.echo(write_report(run))
+            with shown_progress(in_logs=False) as progress:
+                progress("Writing the report", 0, None)
+                path = write_report(run)
+            click.echo(path)
     except RunError as error:
         raise click.UsageError(str(error)) from error
 
