@@ -130,10 +130,12 @@ $(STUBS): $(STAMP) $(wildcard kb_check/stubs/*.py kb_build/flow/*.py)
 
 # The stamp is written last: a set-up that was interrupted is done again.
 $(STAMP): requirements.lock pyproject.toml | $(UV)
-	@echo "Setting up .venv (CPython $(PYTHON_VERSION), pinned dependencies) ..."
+	@echo "Setting up .venv: CPython $(PYTHON_VERSION) ..."
 	@test ! -L .venv || rm .venv  # a link leads to somebody else's environment
 	@test -x $(PY) || $(UV_ENV) "$(UV)" venv --quiet --clear --python $(PYTHON_VERSION) .venv
+	@echo "Setting up .venv: pinned dependencies, Blender's bpy among them (350 MB of it, minutes on a slow line) ..."
 	@$(UV_ENV) "$(UV)" pip sync --quiet --compile-bytecode --python $(PY) --require-hashes requirements.lock
+	@echo "Setting up .venv: SimWorlds itself ..."
 	@$(UV_ENV) "$(UV)" pip install --quiet --python $(PY) --no-deps --no-build-isolation --editable .
 	@$(PY) -m compileall -q simworlds kb_check kb_build kb_serve agents bench measurements release
 	@touch $(STAMP)

@@ -25,6 +25,14 @@ def open_base(path: Path) -> sqlite3.Connection:
         raise StoreError(f"{path}: {error}. {how_to_get_again(path)}") from error
 
 
+def refuse_folder(path: Path) -> None:
+    """Raises StoreError where a folder is in the place of a base that is to be written: before the work, not after."""
+    if path.is_dir():
+        raise StoreError(
+            f"{path} is a folder, where the base is to be a file. Remove it, or give another place"
+        )
+
+
 def read_meta(path: Path) -> dict[str, str]:
     """Reads the facts that a base holds about itself. Raises StoreError as :func:`open_base`."""
     with closing(open_base(path)) as connection:

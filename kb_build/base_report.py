@@ -33,10 +33,7 @@ def base_facts(path: Path) -> dict[str, Any]:
 
 
 def base_lines(facts: Mapping[str, Any]) -> Iterator[str]:
-    """Describes one base in full."""
-    if fault := facts.get("fault"):
-        yield f"Error: {fault}"
-        return
+    """Describes one base that can be read in full."""
     yield f"Blender {facts['blender']} (build {facts['build_hash']})"
     yield _row("file", f"{facts['path']}, {_megabytes(facts['bytes'])}")
     yield _row("built", f"{facts['built_at']} by SimWorlds {facts['simworlds']}")
@@ -83,12 +80,11 @@ def _summaries(facts: Mapping[str, Any]) -> str:
 
 
 def bases_lines(bases: Sequence[Mapping[str, Any]], home: Path) -> Iterator[str]:
-    """Lists the bases, one on a line."""
+    """Lists the bases that can be read, one on a line."""
     if not bases:
         yield f"No knowledge base in {home} yet. {how_to_get(USUAL)}"
     for facts in bases:
         if "fault" in facts:
-            yield f"unreadable: {facts['fault']}"
             continue
         counts = facts["counts"]
         symbols, pages = (sum(counts[kind].values()) for kind in ("symbols", "pages"))
@@ -117,15 +113,15 @@ def build_lines(report: BuildReport) -> Iterator[str]:
 def warning_lines(report: BuildReport) -> Iterator[str]:
     """The warnings of a build that succeeded."""
     for warning in report.warnings:
-        yield f"WARNING: {warning}"
+        yield f"Warning: {warning}"
     if report.summaries is not None:
         for note in report.summaries.notes:
             yield f"Note: {note}"
         failed = report.summaries.failed
         for failure in failed[:_SHOWN_FAILURES]:
-            yield f"WARNING: no summary by Claude for {failure.slug} ({failure.reason}): {failure.detail}"
+            yield f"Warning: no summary by Claude for {failure.slug} ({failure.reason}): {failure.detail}"
         if len(failed) > _SHOWN_FAILURES:
-            yield f"WARNING: … and {len(failed) - _SHOWN_FAILURES:,} more; kb info --json lists them"
+            yield f"Warning: … and {len(failed) - _SHOWN_FAILURES:,} more; kb info --json lists them"
 
 
 def history_lines(report: HistoryReport) -> Iterator[str]:

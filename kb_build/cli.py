@@ -26,6 +26,7 @@ from simworlds.settings import (
     home_folder,
     summaries_path,
 )
+from simworlds.terminal.finite_range import FiniteRange
 from simworlds.terminal.output_file import OutputFile
 
 if TYPE_CHECKING:
@@ -113,13 +114,15 @@ def _roles(_context: click.Context, _parameter: click.Parameter, value: str | No
     help="How pages are summarised: by what ships with SimWorlds; by sentences of their own; by Claude where nothing "
     "ships, which needs ANTHROPIC_API_KEY and costs money.",
 )
-@click.option(
-    "--max-cost", type=click.FloatRange(min=0), help="The most that claude may cost, in US dollars."
-)
+@click.option("--max-cost", type=FiniteRange(min=0), help="The most that claude may cost, in US dollars.")
 @click.option("--model", help="The model that claude's summaries are made with.")
 @click.option("--require", callback=_roles, metavar="ROLES", help="Fail without: manual, guides or both.")
 @click.option("--jobs", type=click.IntRange(1, 64), default=2, show_default=True, help="Processes at most.")
-@click.option("--force", is_flag=True, help="Build even if nothing has changed.")
+@click.option(
+    "--force",
+    is_flag=True,
+    help="Build even if nothing has changed, or if the new base lacks pages that the old one has.",
+)
 @click.option("--offline", is_flag=True, help="Download no documentation.")
 @click.option("--fresh", is_flag=True, help="Download documentation again that was downloaded before.")
 @click.option("--out", type=OutputFile(), help="Write the base to this file.")
@@ -190,11 +193,14 @@ def info(version: str | None, as_json: bool) -> None:
     if version is None:
         bases = [base_facts(path) for path in built_bases(home).values()]
         click.echo(json.dumps(bases, indent=2) if as_json else "\n".join(bases_lines(bases, home)))
-        return
-    facts = base_facts(_base(version))
-    click.echo(json.dumps(facts, indent=2, ensure_ascii=False) if as_json else "\n".join(base_lines(facts)))
-    if "fault" in facts:
-        sys.exit(2)
+    else:
+        bases = [base_facts(_base(version))]
+        if as_json:
+            click.echo(json.dumps(bases[0], indent=2, ensure_ascii=False))
+        elif "fault" not in bases[0]:
+            click.echo("\n".join(base_lines(bases[0])))
+    if faults := [facts["fault"] for facts in bases if "fault" in facts]:
+        raise KBBuildError("\n".join(faults))
 
 
 def _base(version: str) -> Path:
@@ -229,11 +235,15 @@ def verify(version: str | None, reference: Path | None, live: bool, as_json: boo
     VERSION is 5.1, or a base's path (default: the newest base). The exit code is 1 when something is wrong.
     """
     from kb_build.verify import verify_base  # noqa: PLC0415 - only here
+    from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
     bases = list(built_bases(home_folder()).values())
     if version is None and not bases:
         raise KBBuildError(f"There is no knowledge base yet. {how_to_get(USUAL)}")
-    verification = verify_base(_base(version) if version else bases[-1], reference, live=live)
+    base = _base(version) if version else bases[-1]
+    with shown_progress(in_logs=False) as progress:
+        progress(f"Checking {base.name}", 0, None)
+        verification = verify_base(base, reference, live=live)
     click.echo(json.dumps(verification.as_json(), indent=2) if as_json else "\n".join(verification.lines()))
     sys.exit(0 if verification.sound else 1)
 

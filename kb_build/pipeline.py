@@ -14,7 +14,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from kb_build.base_file import read_meta
+from kb_build.base_file import read_meta, refuse_folder
 from kb_build.blender.extractor import extract_api
 from kb_build.digests import Digests
 from kb_build.errors import ExtractError, SourceError, StoreError
@@ -114,12 +114,16 @@ def build(
     """Builds the base of a Blender version, unless it is up to date.
 
     ``version`` is ``"5.1"``, ``"5.1.2"`` or None for the Blender at hand. The old base answers until the new
-    one is whole, whatever happens. Raises KBBuildError.
+    one is whole, whatever happens, and one with pages that can no longer be found stays unless ``force``. Raises
+    KBBuildError.
     """
     began = time.perf_counter()
     runtime = find_runtime(version, home=home, blender_exe=options.blender_exe, progress=progress)
     work = _Build(options, home, progress, runtime)
-    _find_sources(work)
+    refuse_folder(work.path)
+    before = _sources_before(work.path)
+    _find_sources(work, before)
+    _keep_fuller(work, before)
     fingerprint = _fingerprint(work)
     remove_unfinished_files(work.path.parent)
     meta = None if options.force else _present(work.path, fingerprint)
@@ -170,7 +174,19 @@ def _paused_collector() -> Generator[None]:
             gc.enable()
 
 
-def _find_sources(work: _Build) -> None:
+def _keep_fuller(work: _Build, before: Mapping[str, Origin]) -> None:
+    """Refuses to replace a base that has pages by one that would lack them."""
+    lost = [missing for missing in work.missing if missing.role in before]
+    if not lost or work.options.force:
+        return
+    roles = " and ".join(missing.role for missing in lost)
+    raise SourceError(
+        f"{work.path} has pages of the {roles}, and a new base would have none: it is kept as it is. "
+        f"{'; '.join(missing.reason for missing in lost)}. To build without these pages all the same, add --force"
+    )
+
+
+def _find_sources(work: _Build, before: Mapping[str, Origin]) -> None:
     options = work.options
     if not options.pages:
         return
@@ -180,7 +196,7 @@ def _find_sources(work: _Build) -> None:
         manual=options.manual,
         guides=options.guides,
         corpora=options.corpora,
-        before=_sources_before(work.path),
+        before=before,
         allow_download=not options.offline,
         fresh=options.fresh,
         progress=work.progress,

@@ -36,13 +36,16 @@ def stubs(*, version: str | None, out: Path, base: Path | None, with_docs: bool,
         raise click.UsageError("VERSION and --base exclude each other.")
     from kb_check.stubs.package import write_folder, write_wheel  # noqa: PLC0415 - not for --help
     from kb_serve.in_use import tell_of_other  # noqa: PLC0415 - likewise
+    from simworlds.terminal.progress import shown_progress  # noqa: PLC0415 - likewise
 
     try:
         source = base or _base(version)
-        if wheel:
-            target, written = write_wheel(source, out, with_docs=with_docs)
-        else:
-            target, written = out, write_folder(source, out, with_docs=with_docs)
+        with shown_progress(in_logs=False) as progress:
+            progress("Writing stubs", 0, None)
+            if wheel:
+                target, written = write_wheel(source, out, with_docs=with_docs)
+            else:
+                target, written = out, write_folder(source, out, with_docs=with_docs)
     except UserError as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)

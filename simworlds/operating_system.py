@@ -12,6 +12,7 @@ import shlex
 import signal
 import subprocess
 import sys
+import threading
 import time
 from typing import IO, TYPE_CHECKING, Any, Protocol
 
@@ -71,6 +72,13 @@ class System(Protocol):
         """A word as it is typed in the system's own shell."""
         ...
 
+    def repeat(self, call: Callable[[], None], seconds: float) -> Callable[[], None]:
+        """Calls ``call`` every so many seconds, while other code works, until the function that it gives is called.
+
+        No thread does this where processes are forked: a child could not be forked safely then.
+        """
+        ...
+
 
 class Posix:
     """Linux and macOS."""
@@ -122,6 +130,20 @@ class Posix:
     def quoted(self, word: str) -> str:
         """See System."""
         return shlex.quote(word)
+
+    def repeat(self, call: Callable[[], None], seconds: float) -> Callable[[], None]:
+        """See System. A timer of the process calls; only the main thread has one, and not where it is in use."""
+        free = signal.getsignal(signal.SIGALRM) is signal.SIG_DFL
+        if not free or threading.current_thread() is not threading.main_thread():
+            return lambda: None
+        signal.signal(signal.SIGALRM, lambda _number, _frame: call())
+        signal.setitimer(signal.ITIMER_REAL, seconds, seconds)
+
+        def stop() -> None:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, signal.SIG_DFL)
+
+        return stop
 
 
 class Windows:
@@ -204,6 +226,23 @@ class Windows:
     def quoted(self, word: str) -> str:
         """See System."""
         return subprocess.list2cmdline([word])
+
+    def repeat(self, call: Callable[[], None], seconds: float) -> Callable[[], None]:
+        """See System. Nothing is forked there."""
+        stopped = threading.Event()
+
+        def run() -> None:
+            while not stopped.wait(seconds):
+                call()
+
+        thread = threading.Thread(target=run, daemon=True)
+        thread.start()
+
+        def stop() -> None:
+            stopped.set()
+            thread.join()
+
+        return stop
 
 
 class _Number:

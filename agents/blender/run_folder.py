@@ -36,6 +36,11 @@ class RunFolder:
         folder.checkpoints.mkdir(parents=True, exist_ok=True)
         return folder
 
+    @staticmethod
+    def is_foreign(root: Path) -> bool:
+        """Whether the folder has files of somebody else in it, and no run."""
+        return root.is_dir() and any(root.iterdir()) and not (root / "checkpoints").is_dir()
+
     @property
     def workspace(self) -> HostileGround:
         """The folder that Blender may write to."""

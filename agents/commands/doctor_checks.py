@@ -391,7 +391,13 @@ def _open_blender() -> DoctorResult:
 def _room(sandbox: Sandbox) -> DoctorResult:
     place = runs_folder()
     existing = next(folder for folder in (place, *place.parents) if folder.is_dir())
-    free = shutil.disk_usage(existing).free
+    try:
+        with tempfile.TemporaryDirectory(prefix=".simworlds-doctor-", dir=existing):
+            free = shutil.disk_usage(existing).free
+    except OSError as error:
+        text = f"no run can be kept: {existing} cannot be written to: {error.strerror or error}"
+        advice = "set SIMWORLDS_HOME to a folder that can be written to"
+        return DoctorResult("Room", "bad", text, place=str(place), advice=advice, data={"runs": str(place)})
     memory = sandbox.limits.memory
     text = f"{free / GIB:,.0f} GiB of disk space free for runs"
     if memory:

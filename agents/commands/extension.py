@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import shutil
+import sys
 import tempfile
 from pathlib import Path
+from typing import NoReturn
 
 import click
 
@@ -30,7 +32,7 @@ def build(*, folder: Path) -> None:
     try:
         click.echo(build_in(folder))
     except CannotInstall as error:
-        raise click.ClickException(str(error)) from error
+        _fail(str(error))
 
 
 @extension.command()
@@ -46,10 +48,16 @@ def install(*, blender_exe: Path | None) -> None:
 
     blender = str(blender_exe) if blender_exe is not None else shutil.which("blender")
     if blender is None:
-        raise click.ClickException("There is no blender on PATH. Name the program with --blender-exe.")
+        _fail("There is no blender on PATH. Name the program with --blender-exe.")
     try:
         with tempfile.TemporaryDirectory() as folder:
             version = install_in(build_in(Path(folder)), Path(blender))
     except CannotInstall as error:
-        raise click.ClickException(str(error)) from error
+        _fail(str(error))
     click.echo(f"Installed in Blender {version}. In its sidebar (N), press Start in the tab SimWorlds.")
+
+
+def _fail(message: str) -> NoReturn:
+    """Ends the command as others end that cannot do what they are asked for."""
+    click.echo(f"Error: {message}", err=True)
+    sys.exit(2)

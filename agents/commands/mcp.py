@@ -14,6 +14,7 @@ from agents.blender.tool_profiles import DEFAULT, PROFILES
 from agents.commands import options
 from agents.commands.sandbox_warning import warn
 from simworlds.releases import minor_of
+from simworlds.terminal.finite_range import FiniteRange
 
 if TYPE_CHECKING:
     from mcp.server.lowlevel import Server
@@ -61,7 +62,7 @@ _ASSETS = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=
 )
 @click.option(
     "--timeout",
-    type=click.FloatRange(1, 3600),
+    type=FiniteRange(1, 3600),
     default=170.0,
     show_default=True,
     metavar="SECONDS",
@@ -92,7 +93,7 @@ _ASSETS = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=
 )
 @click.option(
     "--idle",
-    type=click.FloatRange(0, min_open=True),
+    type=FiniteRange(0, min_open=True),
     default=30.0,
     show_default=True,
     metavar="MINUTES",
@@ -139,6 +140,8 @@ def mcp(  # noqa: PLR0913 - one for each option
         raise click.UsageError(
             f"--attach does not go with --as {stands_for}: that serves a Blender of its own."
         )
+    if run is not None and _is_foreign(run):
+        raise click.UsageError(f"--run: {run} is not empty, and holds no run. Choose another folder.")
     # Nothing that is loaded is garbage, and looking for it would slow the start.
     gc.disable()
     from agents.blender.blender_sessions import SessionSetup  # noqa: PLC0415
@@ -168,6 +171,12 @@ def mcp(  # noqa: PLR0913 - one for each option
     except CannotStart as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)
+
+
+def _is_foreign(run: Path) -> bool:
+    from agents.blender.run_folder import RunFolder  # noqa: PLC0415 - not for --help
+
+    return RunFolder.is_foreign(run)
 
 
 def _is_typed(context: click.Context, name: str) -> bool:

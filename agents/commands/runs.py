@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from simworlds.terminal.finite_range import FiniteRange
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
     from types import FrameType
@@ -51,10 +53,8 @@ def _options(*options: Callable[[Command], Command]) -> Callable[[Command], Comm
 
 
 _limits = _options(
-    click.option(
-        "--max-cost", type=click.FloatRange(0), metavar="USD", help="Stop before the run costs more."
-    ),
-    click.option("--max-minutes", type=click.FloatRange(0, min_open=True), help="Stop after this time."),
+    click.option("--max-cost", type=FiniteRange(0), metavar="USD", help="Stop before the run costs more."),
+    click.option("--max-minutes", type=FiniteRange(0, min_open=True), help="Stop after this time."),
     click.option("--quiet", is_flag=True, help="Print only the outcome."),
 )
 _model = _options(
@@ -80,7 +80,7 @@ _model = _options(
 _RENDER = (
     click.option(
         "--render-minutes",
-        type=click.FloatRange(0, min_open=True),
+        type=FiniteRange(0, min_open=True),
         help="Time for a film; its samples and size are fitted to it.  [default: what --max-minutes leaves, else 20]",
     ),
     click.option(
@@ -226,11 +226,15 @@ def show(run: Path, *, report: bool) -> None:
     from agents.views.report.page import write_report  # noqa: PLC0415
     from agents.views.run_list import shown  # noqa: PLC0415
     from simworlds.terminal.console import Console  # noqa: PLC0415 - not for --help
+    from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
     try:
         Console(sys.stdout).print(shown(run))
         if report:
-            click.echo(write_report(run))
+            with shown_progress(in_logs=False) as progress:
+                progress("Writing the report", 0, None)
+                path = write_report(run)
+            click.echo(path)
     except RunError as error:
         raise click.UsageError(str(error)) from error
 
@@ -285,7 +289,7 @@ def _work(
 ) -> None:
     from agents.loop.errors import RunError  # noqa: PLC0415 - not for --help
     from agents.loop.reducer import read_run_state  # noqa: PLC0415
-    from agents.loop.session import RunSession, Stop  # noqa: PLC0415
+    from agents.loop.session import RunSession, Stop, resume_command  # noqa: PLC0415
     from agents.views.live_view import RunView, make_view  # noqa: PLC0415
     from agents.views.report.early import ReportWriter  # noqa: PLC0415
     from agents.views.report.page import write_report  # noqa: PLC0415
@@ -307,7 +311,7 @@ def _work(
         if path is not None and path.exists():
             click.echo(path)
     if ended.how in ("stopped", "failed") and ended.again:
-        click.echo(f"Continue with: simworlds resume {root}", err=True)
+        click.echo(f"Continue with: {resume_command(root)}", err=True)
     sys.exit(EXITS[ended.how])
 
 

@@ -52,20 +52,25 @@ class _CannotCheckError(Exception):
     help="The scene plan (JSON) that the scene was built to. Default: the plan of the run that made the file.",
 )
 @click.option("--rules", metavar="LIST", help="Families or rules, such as C,G,V1. Default: all.")
-@click.option("--json", "form", flag_value="json", help="Print everything as JSON.")
-@click.option("--sarif", "form", flag_value="sarif", help="Print the findings as SARIF 2.1.0.")
+@click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
+@click.option("--sarif", "sarif", is_flag=True, help="Print the findings as SARIF 2.1.0.")
 @click.option("--image", type=_PATH, help="Draw the findings on views of the scene, as a PNG.")
 @click.option("--frame", type=int, help="The frame to check. Default: the frame saved in the file.")
 @click.option("--read", type=_PATH, multiple=True, help="A folder that Blender may read, for linked files.")
 @options.VERSION
 @options.EXECUTABLE
-def verify(scenes: tuple[Path, ...], form: str | None, rules: str | None, **choices: Any) -> None:
+def verify(
+    scenes: tuple[Path, ...], *, as_json: bool, sarif: bool, rules: str | None, **choices: Any
+) -> None:
     """Check a .blend against the scene protocol, and against the plan that it was built to.
 
     The file is not changed, and no script in it runs. Of several files, one log of SARIF holds all. Exit code 0: no
     hard rule is broken. 1: at least one is. 2: it could not be checked: the file cannot be opened, the plan has faults,
-    or a rule could not be decided.
+    or a rule could not be decided; or the image that was asked for could not be made.
     """
+    if as_json and sarif:
+        raise click.UsageError("--json and --sarif exclude each other.")
+    form = "json" if as_json else "sarif" if sarif else None
     if len(scenes) > 1 and (choices["plan"] or choices["image"] or form == "json"):
         raise click.UsageError("--plan, --image and --json are of one file: give one.")
     _on_signals(_interrupt)
@@ -98,11 +103,13 @@ def _verify(
     if image is not None and not image.absolute().parent.is_dir():
         raise _CannotCheckError(f"The folder {image.absolute().parent} for {image.name} does not exist.")
     try:
-        report, checked = _run(scene, rules, plan, choices)
+        report, checked, fault = _run(scene, rules, plan, choices)
     except BlenderError as error:
         raise _CannotCheckError(f"{scene} could not be checked: {error}") from error
     _print(report, checked, form, logs)
-    return exit_code(report)
+    if fault:
+        click.echo(f"Error: no image could be made: {fault}", err=True)
+    return _UNCHECKED if fault else exit_code(report)
 
 
 def _rules(wanted: str | None) -> tuple[Rule, ...]:
@@ -150,8 +157,11 @@ def _plan(path: Path) -> ScenePlan:
 
 def _run(
     scene: Path, rules: tuple[Rule, ...], plan: ScenePlan | None, choices: dict[str, Any]
-) -> tuple[Report, VerificationScope]:
-    """Checks the scene, and draws the image if one is wanted. Raises _CannotCheckError and BlenderError."""
+) -> tuple[Report, VerificationScope, str]:
+    """Checks the scene, and draws the image if one is wanted; gives why that failed, "" if it did not.
+
+    Raises _CannotCheckError and BlenderError.
+    """
     from agents.blender.tools.base import Call  # noqa: PLC0415 - not for --help
     from agents.blender.verification import ScenePosition, verify_scene  # noqa: PLC0415
     from agents.protocol.report.summary import VerificationScope  # noqa: PLC0415
@@ -182,11 +192,11 @@ def _run(
                 blender=blender.launch.runtime.version,
                 plan=plan.title if plan else "",
             )
+            fault = ""
             if choices["image"] is not None:
                 status.show("Drawing")
-                if fault := _draw(blender, report, call, checked, choices["image"]):
-                    click.echo(f"No image could be made: {fault}", err=True)
-    return report, checked
+                fault = _draw(blender, report, call, checked, choices["image"])
+    return report, checked, fault
 
 
 @contextmanager

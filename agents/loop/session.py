@@ -27,6 +27,8 @@ from simworlds.folder_lock import locked
 from simworlds.installed import own_version
 from simworlds.llm.errors import ModelError, OverBudget
 from simworlds.llm.spending import Spending
+from simworlds.operating_system import SYSTEM
+from simworlds.own_command import own_command
 from simworlds.sandbox.confined_command import best_sandbox
 from simworlds.sandbox.errors import BlenderError, Refusal
 from simworlds.sandbox.launch import find_blender
@@ -102,9 +104,10 @@ def begin(root: Path, options: Options, session: RunSession) -> Ended:
     check_inputs(options)
     try:
         if root.exists() and any(root.iterdir()):
-            raise NoRun(
-                f"{root} is not empty. Choose another folder, or continue with 'simworlds resume {root}'."
+            goes_on = (
+                f", or continue the run in it: {resume_command(root)}" if (root / NAME).is_file() else "."
             )
+            raise NoRun(f"{root} is not empty. Choose another folder{goes_on}")
         check_model(options)
         root.mkdir(parents=True, exist_ok=True)
     except ModelError as error:
@@ -112,6 +115,11 @@ def begin(root: Path, options: Options, session: RunSession) -> Ended:
     except OSError as error:
         raise NoRun(f"{root} cannot be used as the folder of a run: {error.strerror or error}.") from error
     return _work(root, options, session)
+
+
+def resume_command(root: Path) -> str:
+    """The command that continues the run in ``root``, to be pasted."""
+    return f"{own_command()} resume {SYSTEM.quoted(str(root))}"
 
 
 def resume(root: Path, session: RunSession) -> Ended:

@@ -47,14 +47,16 @@ def audit(blend: Path, scene: str, as_json: bool, **given: Any) -> None:
     except (BadSpec, BlenderError) as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(2)
-    click.echo(result.as_json() if as_json else "\n".join(_lines(result)))
+    if as_json:
+        click.echo(result.as_json())
+    elif result.not_scored is None:
+        click.echo("\n".join(_lines(result)))
+    else:
+        click.echo(f"Error: {blend} was not scored: {result.not_scored}", err=True)
     sys.exit(0 if result.not_scored is None else 2)
 
 
 def _lines(audit: Audit) -> Iterator[str]:
-    if audit.not_scored is not None:
-        yield f"{audit.scene}: not scored: {audit.not_scored}"
-        return
     frames, fps = audit.blend["frames"], audit.blend["fps"]
     yield f"{audit.scene}: frames {frames[0]} to {frames[1]} at {fps:g} fps, {audit.blend['objects']} objects"
     if audit.blend["unplayed"]:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bench.commands.shared_options import judge_cache, price_of, with_blender_version
+from bench.commands.shared_options import MEMORY, judge_cache, price_of, with_blender_version
+from simworlds.terminal.finite_range import FiniteRange
 
 if TYPE_CHECKING:
     from collections.abc import Generator
@@ -71,16 +72,16 @@ def tasks(folder: Path) -> None:
     help="The picture that SimWorlds is given; a task without a visual prompt has its goal.",
 )
 @click.option("--model", metavar="NAME", help="Of SimWorlds.  [default: as of 'simworlds edit']")
-@click.option("--max-cost", type=click.FloatRange(0), metavar="USD", help="Of SimWorlds, for each task.")
-@click.option("--max-minutes", type=click.FloatRange(0, min_open=True), help="Of SimWorlds, for each task.")
+@click.option("--max-cost", type=FiniteRange(0), metavar="USD", help="Of SimWorlds, for each task.")
+@click.option("--max-minutes", type=FiniteRange(0, min_open=True), help="Of SimWorlds, for each task.")
 @click.option(
     "--seconds",
-    type=click.FloatRange(1),
+    type=FiniteRange(1),
     default=1800.0,
     show_default=True,
     help="How long a step in Blender may take.",
 )
-@click.option("--memory", type=click.FloatRange(0.25), help="How much memory Blender may take (GiB).")
+@click.option("--memory", type=MEMORY, help="How much memory Blender may take (GiB).")
 @with_blender_version
 def run(folder: Path, **given: Any) -> None:
     """Have a system edit the tasks of SET, and render what came of it.
@@ -137,7 +138,7 @@ def run(folder: Path, **given: Any) -> None:
 )
 @click.option("--base-url", metavar="URL", help="Another server that speaks the judge's API.")
 @click.option("--cache", type=_PATH, help="Folder that marks are kept in.  [default: of SimWorlds]")
-@click.option("--max-cost", type=click.FloatRange(0), metavar="USD", help="Ask no judge beyond it.")
+@click.option("--max-cost", type=FiniteRange(0), metavar="USD", help="Ask no judge beyond it.")
 @click.option("--price", metavar="IN/OUT", help="Dollars per million tokens, of a model that is in no list.")
 def score(out: Path, **given: Any) -> None:
     """Score RESULTS: PL; N-CLIP with --clip; the judge's marks with --judge. No system is run again.

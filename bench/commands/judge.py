@@ -11,6 +11,7 @@ import click
 
 from bench.commands.scenes import chosen_spec
 from bench.commands.shared_options import judge_cache, price_of, tell_on_terminal
+from simworlds.terminal.finite_range import FiniteRange
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,7 +38,7 @@ _PASSING = ("refused", "cut short", "malformed")  # another attempt may succeed
 @click.option("--repeat", type=click.IntRange(1, 100), default=1, show_default=True, help="Judge so often.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 @click.option("--cache", type=_PATH, help="Folder of cached answers.  [default: in SimWorlds' cache]")
-@click.option("--max-cost", type=click.FloatRange(0), metavar="USD", help="Stop before it could cost more.")
+@click.option("--max-cost", type=FiniteRange(0), metavar="USD", help="Stop before it could cost more.")
 @click.option(
     "--price", metavar="IN/OUT", help="Dollars per million tokens, for a model without a list price."
 )

@@ -10,6 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from simworlds.terminal.finite_range import FiniteRange
+from simworlds.terminal.output_file import OutputFile
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
@@ -26,12 +29,15 @@ _PATH = click.Path(path_type=Path)
 )
 @click.option(
     "--html",
-    type=_PATH,
+    type=OutputFile(),
     help="Where to write the page with every scene.  [default: report.html in the first RESULTS]",
 )
-@click.option("--markdown", type=_PATH, help="Write the tables to this file.")
+@click.option("--markdown", type=OutputFile(), help="Write the tables to this file.")
 @click.option(
-    "--json", "as_json", type=_PATH, help="Write the figures as JSON; '-' prints them instead of the tables."
+    "--json",
+    "as_json",
+    type=OutputFile(),
+    help="Write the figures as JSON; '-' prints them instead of the tables.",
 )
 @click.option("--paper", is_flag=True, help="Add the paper's published figures.")
 def report(results: tuple[Path, ...], **given: Any) -> None:
@@ -99,7 +105,7 @@ def report(results: tuple[Path, ...], **given: Any) -> None:
 )
 @click.option(
     "--making",
-    type=click.FloatRange(0),
+    type=FiniteRange(0),
     metavar="MINUTES",
     help="Time that a system takes per scene, instead of the measured one.",
 )

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from simworlds.terminal.finite_range import FiniteRange
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
     Command = TypeVar("Command", bound=Callable[..., Any])
 
 _PATH = click.Path(path_type=Path)
+MEMORY = FiniteRange(0.25, 4096)  # GiB: with less, Blender does not start
 
 
 def combine(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
@@ -47,8 +50,20 @@ with_audit_options = combine(
         multiple=True,
         help="A further folder that Blender may read, e.g. of linked files.",
     ),
-    click.option("--seconds", default=120.0, show_default=True, help="Time limit for auditing one file."),
-    click.option("--memory", default=4.0, show_default=True, help="Memory limit for Blender (GiB)."),
+    click.option(
+        "--seconds",
+        type=FiniteRange(1, 86_400),
+        default=120.0,
+        show_default=True,
+        help="Time limit for auditing one file.",
+    ),
+    click.option(
+        "--memory",
+        type=MEMORY,
+        default=4.0,
+        show_default=True,
+        help="Memory limit for Blender (GiB).",
+    ),
     with_blender_version,
 )
 

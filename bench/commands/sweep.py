@@ -12,6 +12,7 @@ import click
 
 from bench.commands.shared_options import blender_options, combine, judge_cache, with_audit_options
 from bench.commands.system_options import system_of, with_system_options
+from simworlds.terminal.finite_range import FiniteRange
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Sequence
@@ -61,9 +62,7 @@ _scoring = combine(
     ),
     click.option("--judge-model", metavar="NAME", help="The judge's model.  [default: as of 'bench judge']"),
     click.option("--judge-url", metavar="URL", help="Another server that speaks the provider's API."),
-    click.option(
-        "--judge-max-cost", type=click.FloatRange(0), metavar="USD", help="For all scenes together."
-    ),
+    click.option("--judge-max-cost", type=FiniteRange(0), metavar="USD", help="For all scenes together."),
     click.option("--judge-cache", type=_PATH, help="Folder of answers.  [default: in SimWorlds' own]"),
     with_audit_options,
 )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from bench.commands.shared_options import combine
+from simworlds.terminal.finite_range import FiniteRange
 
 if TYPE_CHECKING:
     from bench.sweep.records import Ablation, SystemInfo
@@ -32,12 +33,10 @@ with_system_options = combine(
     click.option(
         "--role-model", multiple=True, metavar="ROLE=NAME", help=f"simworlds: another one for {_ROLES}."
     ),
-    click.option("--max-cost", type=click.FloatRange(0), metavar="USD", help="simworlds: for each scene."),
-    click.option("--max-minutes", type=click.FloatRange(0, min_open=True), help=f"{_BOTH} for each scene."),
+    click.option("--max-cost", type=FiniteRange(0), metavar="USD", help="simworlds: for each scene."),
+    click.option("--max-minutes", type=FiniteRange(0, min_open=True), help=f"{_BOTH} for each scene."),
     click.option("--samples", type=click.IntRange(1), help=f"{_BOTH} samples of the rendering."),
-    click.option(
-        "--render-minutes", type=click.FloatRange(0, min_open=True), help=f"{_BOTH} for the rendering."
-    ),
+    click.option("--render-minutes", type=FiniteRange(0, min_open=True), help=f"{_BOTH} for the rendering."),
     click.option("--no-verifier", is_flag=True, help="simworlds: leave the verifier out (ablation)."),
     click.option("--no-stages", is_flag=True, help="simworlds: build everything in one pass (ablation)."),
 )

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import json
+import os
 import re
+import shutil
 from collections import Counter, defaultdict
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -31,6 +34,7 @@ _EXTRACTOR = Program(
 )
 _SECONDS = 600.0
 _CRASHES = 4
+_LEAST_FREE = 64 << 10  # bytes: an extract is written in pieces of about so many
 _NODE = re.compile(r'bpy\.types\.(\w*Node\w*)(?:\.(inputs|outputs)\["(.*)"\])?')
 _MAKING = re.compile(rb'\{"record":"making","maker":"(\w+)"\}')
 
@@ -57,10 +61,16 @@ def extract_api(runtime: Runtime, *, home: Path, again: bool = False, progress: 
             _run(runtime, part, folder / f"blender-{runtime.version}.log")
     except OSError as error:
         raise ExtractError(
-            f"{target} cannot be written: {error}; make room there, or set SIMWORLDS_HOME"
+            f"{target} cannot be written: {error.strerror or error}. {_remedy(error)}, or set SIMWORLDS_HOME to "
+            "another folder"
         ) from error
     _remove_older(target, minor_of(runtime.version))
     return target
+
+
+def _remedy(error: OSError) -> str:
+    is_full = error.errno in {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+    return "Make room there" if is_full else "Make the folder writable"
 
 
 def _has_moved(extract: Path) -> bool:
@@ -99,6 +109,8 @@ def _run(runtime: Runtime, part: Path, log: Path) -> None:
                     run_program(runtime, _EXTRACTOR, [str(given), str(part)], timeout=_SECONDS, log=log)
                 break
             except ProgramFailed as error:
+                if shutil.disk_usage(part.parent).free < _LEAST_FREE:
+                    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(part.parent)) from error
                 crashed = _maker_at_work(part)
                 if not crashed or crashed in skipped or len(skipped) == _CRASHES:
                     raise ExtractError(str(error)) from error

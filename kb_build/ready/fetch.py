@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import urldefrag, urlsplit
 
+from kb_build.base_file import refuse_folder
 from kb_build.errors import FetchedElsewhere, KBBuildError, ReadyBaseError, SourceError
 from kb_build.pages.archives import ArchiveLimits, unpack
 from kb_build.pages.download import ArchiveKind, DownloadPatience, download
@@ -67,6 +68,8 @@ def fetch_base(version: str, source: str, *, home: Path, progress: Progress = si
     """
     minor = minor_of(version) if version else ""
     place, wanted = _split(source)
+    if minor:
+        refuse_folder(base_path(home, minor))
     try:
         with _archive(place, minor, wanted, home, progress) as archive:
             return _install(archive, wanted, minor, home, progress)

@@ -12,7 +12,7 @@ from simworlds.terminal.lines import is_terminal, write_line
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-    from rich.progress import Progress as Bar
+    from simworlds.terminal.progress_bar import RunningBar
 
 _LINE_SECONDS = 2.0
 _DRAW_SECONDS = 0.1
@@ -59,21 +59,19 @@ class _ProgressLines:
 
 
 class _ProgressBar:
-    """A bar for what is being done now, redrawn at most ten times a second; it vanishes at the end."""
+    """A bar for what is being done now, drawn at most ten times a second for what is old; it vanishes at the end."""
 
     def __init__(self) -> None:
-        self._bar: Bar | None = None
+        self._bar: RunningBar | None = None
         self._throttle = _Throttle(_DRAW_SECONDS)
 
     def __call__(self, label: str, done: int, total: int | None, /) -> None:
         if self._bar is None:
-            from simworlds.terminal.progress_bar import start_bar  # noqa: PLC0415 - slow to load, often not needed
+            from simworlds.terminal.progress_bar import RunningBar  # noqa: PLC0415 - slow to load, often not needed
 
-            self._bar = start_bar()
+            self._bar = RunningBar()
         if self._throttle.lets(label) or done == total:
-            self._bar.update(
-                self._bar.task_ids[0], description=label, completed=done, total=total, refresh=True
-            )
+            self._bar.show(label, done, total)
 
     def close(self) -> None:
         if self._bar is not None:
@@ -81,10 +79,10 @@ class _ProgressBar:
 
 
 @contextmanager
-def shown_progress() -> Generator[Progress]:
-    """The progress that fits where stderr goes."""
+def shown_progress(*, in_logs: bool = True) -> Generator[Progress]:
+    """The progress that fits where stderr goes. Without ``in_logs``, for what takes seconds, only on a terminal."""
     if not is_terminal(sys.stderr):
-        yield _ProgressLines()
+        yield _ProgressLines() if in_logs else silent
         return
     bar = _ProgressBar()
     try:

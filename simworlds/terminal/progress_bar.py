@@ -3,23 +3,35 @@
 from __future__ import annotations
 
 import sys
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from rich.progress import (
     BarColumn,
     Progress,
+    ProgressColumn,
     SpinnerColumn,
     TaskProgressColumn,
-    TextColumn,
     TimeElapsedColumn,
 )
 from rich.text import Text
 
+from simworlds.operating_system import SYSTEM
 from simworlds.terminal.console import Console
 
 if TYPE_CHECKING:
     from rich.progress import Task
     from rich.progress_bar import ProgressBar
+
+_DRAW_SECONDS = 0.25
+
+
+class _LabelColumn(ProgressColumn):
+    """What is being done: on a narrow terminal it is cut, where the clock is not."""
+
+    def render(self, task: Task) -> Text:
+        """The description."""
+        return Text(task.description, no_wrap=True, overflow="ellipsis")
 
 
 class _KnownLengthColumn(BarColumn):
@@ -30,19 +42,41 @@ class _KnownLengthColumn(BarColumn):
         return Text() if task.total is None else super().render(task)
 
 
-def start_bar() -> Progress:
-    """Starts a bar with one task on stderr; it is drawn on request only, and vanishes when it is stopped."""
-    bar = Progress(
-        SpinnerColumn(),
-        TextColumn("{task.description}", markup=False),
-        _KnownLengthColumn(bar_width=30),
-        TaskProgressColumn(),
-        TimeElapsedColumn(),
-        console=Console(sys.stderr),
-        # A drawing thread would make forking unsafe (simworlds.forked), and builds read pages in a second process.
-        auto_refresh=False,
-        transient=True,
-    )
-    bar.add_task("", total=None)
-    bar.start()
-    return bar
+class RunningBar:
+    """A bar with one task on stderr, whose clock and spinner go on while the task works; it vanishes when stopped."""
+
+    def __init__(self) -> None:
+        self._is_drawing = False
+        self._bar = Progress(
+            SpinnerColumn(),
+            _LabelColumn(),
+            _KnownLengthColumn(bar_width=30),
+            TaskProgressColumn(),
+            TimeElapsedColumn(),
+            console=Console(sys.stderr),
+            # A drawing thread would make forking unsafe (simworlds.forked), and builds read pages in a second process.
+            auto_refresh=False,
+            transient=True,
+        )
+        self._task = self._bar.add_task("", total=None)
+        self._bar.start()
+        self._end_redrawing = SYSTEM.repeat(self._redraw, _DRAW_SECONDS)
+
+    def show(self, label: str, done: int, total: int | None) -> None:
+        """Draws what is being done, and how much of it is done."""
+        self._is_drawing = True
+        try:
+            self._bar.update(self._task, description=label, completed=done, total=total, refresh=True)
+        finally:
+            self._is_drawing = False
+
+    def stop(self) -> None:
+        """Wipes the bar."""
+        self._end_redrawing()
+        self._bar.stop()
+
+    def _redraw(self) -> None:
+        """Called in the midst of any code, which must not be told that the terminal is gone, or busy with its line."""
+        if not self._is_drawing:
+            with suppress(OSError, RuntimeError):
+                self._bar.refresh()

@@ -145,7 +145,7 @@ def test_a_missing_source_and_one_of_another_version_are_named_in_the_report_and
     guides.rename(small.corpora / "elsewhere")
     other = small.corpora / "manual-4.4-rst"
     (small.corpora / f"manual-{small.minor}-rst").rename(other)
-    report = build(None, options=replace(small.options, manual=other), home=small.home)
+    report = build(None, options=replace(small.options, manual=other, force=True), home=small.home)
     assert report.built
     assert [one.role for one in report.missing] == ["guides"]
     assert any("--guides PATH" in warning for warning in report.warnings)
@@ -163,6 +163,14 @@ def test_a_required_source_that_is_missing_is_an_error_and_the_old_base_stands(s
     (small.corpora / f"manual-{small.minor}-rst").rename(small.corpora / "elsewhere")
     with pytest.raises(SourceError, match="required"):
         build(None, options=replace(small.options, require=frozenset({"manual"})), home=small.home)
+    assert stamp(small.path) == before
+
+
+def test_a_base_with_pages_is_not_replaced_by_one_that_lacks_them(small: Built) -> None:
+    before = stamp(small.path)
+    (small.corpora / f"manual-{small.minor}-rst").rename(small.corpora / "elsewhere")
+    with pytest.raises(SourceError, match=r"has pages of the manual.*kept as it is.*--manual PATH.*--force"):
+        build(None, options=small.options, home=small.home)
     assert stamp(small.path) == before
 
 

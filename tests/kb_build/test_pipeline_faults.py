@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -16,7 +17,7 @@ import pytest
 from places import REPO
 
 from kb_build.base_file import read_meta
-from kb_build.errors import ExtractError, KBBuildError, SourceError
+from kb_build.errors import ExtractError, KBBuildError, SourceError, StoreError
 from kb_build.pipeline import BuildOptions, build
 
 if TYPE_CHECKING:
@@ -251,3 +252,21 @@ def test_a_home_that_cannot_be_written_is_named(small: Built, tmp_path: Path) ->
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(KBBuildError, match="file"):
         build(None, options=replace(small.options, output=tmp_path / "file" / "a.sqlite"), home=small.home)
+
+
+def test_a_disk_that_is_full_while_blender_answers_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    options = BuildOptions(blender_exe=program(tmp_path, "echo WARNING of an enum; exit 1"), pages=False)
+    full = shutil.disk_usage(tmp_path)._replace(free=0)
+    monkeypatch.setattr("kb_build.blender.extractor.shutil.disk_usage", lambda _: full)
+    with pytest.raises(ExtractError, match=r"cannot be written: No space left on device\. Make room there"):
+        build("5.1", options=options, home=tmp_path / "home")
+
+
+def test_a_folder_where_the_base_is_to_be_is_an_error_before_blender_is_asked(tmp_path: Path) -> None:
+    target = tmp_path / "home" / "kb" / "blender-5.1.sqlite"
+    target.mkdir(parents=True)
+    options = BuildOptions(blender_exe=program(tmp_path, "exit 1"), pages=False)
+    with pytest.raises(StoreError, match=r"is a folder.*Remove it"):
+        build("5.1", options=options, home=tmp_path / "home")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from agents.protocol.report.grouping import group_findings
-from agents.protocol.report.summary import coverage, fix_of, verdict
+from agents.protocol.report.summary import coverage, fix_of, is_untagged, verdict
 from agents.protocol.report.text_format import format_value
 from simworlds.terminal.text import plain
 
@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from agents.protocol.report.summary import VerificationScope
 
 _MAX_OBJECTS = 10  # of a group
+_UNTAGGED = (
+    "Most rules need the protocol's tags, and this scene has none: tag its objects first (blender_group)."
+)
 _OUTCOMES = {"broken": "", "undecided": ", undecided", "error": ", the rule failed"}
 
 
@@ -41,7 +44,8 @@ def as_text(report: Report, scope: VerificationScope) -> str:
         if fix and fix != before:
             lines.append(f"  Fix: {fix}")
         before = fix
-    return "\n".join([*lines, "", *coverage(report, scope)])
+    advice = [_UNTAGGED] if is_untagged(report) else []
+    return "\n".join([*lines, "", *coverage(report, scope), *advice])
 
 
 def _values(group: FindingGroup) -> list[str]:

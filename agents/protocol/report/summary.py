@@ -17,9 +17,7 @@ if TYPE_CHECKING:
     from agents.protocol.rule import Rule
 
 _TOLD = frozenset({NO_ROLES, NO_PLAN})
-_UNTAGGED = (
-    "Most rules need the protocol's tags, and this scene has none: tag its objects first (blender_group)."
-)
+_LAYOUT = "C"  # the family of rules about the tags themselves
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +68,20 @@ def verdict(report: Report) -> str:
     return f"{state}: {', '.join(words)}."
 
 
+def is_untagged(report: Report) -> bool:
+    """Whether the scene has none of the protocol's tags, which most rules need."""
+    return NO_ROLES in report.not_applicable.values()
+
+
+def without_tags(report: Report, scope: VerificationScope) -> list[Rule]:
+    """The rules that could be applied to a scene without tags, but for those about the tags themselves."""
+    return [
+        rule
+        for rule in scope.rules
+        if rule.id not in report.not_applicable and not rule.id.startswith(_LAYOUT)
+    ]
+
+
 def coverage(report: Report, scope: VerificationScope) -> list[str]:
     """Lines that say what was checked, and what was not and why."""
     order = [rule.id for rule in scope.rules]
@@ -90,8 +102,6 @@ def coverage(report: Report, scope: VerificationScope) -> list[str]:
         if name in report.not_applicable:
             reasons.setdefault(report.not_applicable[name], []).append(name)
     lines += _not_checked(reasons, order)
-    if NO_ROLES in reasons:
-        lines.append(_UNTAGGED)
     return [*lines, *map(plain, report.remarks)]
 
 

@@ -10,8 +10,9 @@ from rich.table import Table
 from rich.text import Text
 
 from agents.protocol.report.grouping import group_findings
-from agents.protocol.report.summary import coverage, exit_code, fix_of, verdict
+from agents.protocol.report.summary import coverage, exit_code, fix_of, is_untagged, verdict, without_tags
 from agents.protocol.report.text_format import MAX_NAMES
+from simworlds.operating_system import SYSTEM
 from simworlds.terminal.text import plain
 
 if TYPE_CHECKING:
@@ -30,6 +31,8 @@ _NARROW = 100  # letters
 def as_table(report: Report, scope: VerificationScope, width: int) -> Group:
     """A table with a row per group of findings, and what was checked, for rich to print ``width`` letters wide."""
     parts: list[RenderableType] = [Text(scope.title, "bold")]
+    if is_untagged(report):
+        parts += map(Text, _untagged(report, scope))
     groups = group_findings(report.findings)
     if groups:
         parts.append(_table(groups, scope, is_narrow=width < _NARROW))
@@ -37,6 +40,22 @@ def as_table(report: Report, scope: VerificationScope, width: int) -> Group:
     parts += [Text(line, "dim") for line in coverage(report, scope)]
     parts.append(Text(f"measured in {report.seconds:.1f} s, not counting the opening of the file", "dim"))
     return Group(*parts)
+
+
+def _untagged(report: Report, scope: VerificationScope) -> list[str]:
+    """By what a scene without tags is judged, and what it can be checked for."""
+    rules = without_tags(report, scope)
+    text = (
+        "Judged by SimWorlds' scene protocol, of whose tags this scene has none. They say which meshes are one object "
+        "and what it stands on: without them, gaps and missing support are not checked, and the findings of family C "
+        "say only that tags are missing. An agent sets them, with the tools of simworlds mcp."
+    )
+    if rules:
+        names = ", ".join(f"{rule.name} ({rule.id})" for rule in rules)
+        file = SYSTEM.quoted(scope.file) if scope.file else "FILE"
+        command = f"simworlds verify {file} --rules {','.join(rule.id for rule in rules)}"
+        return [text, plain(f"What needs no tags: {names}. Check for that alone: {command}")]
+    return [text]
 
 
 def _table(groups: Sequence[FindingGroup], scope: VerificationScope, *, is_narrow: bool) -> Table:

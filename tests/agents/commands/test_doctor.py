@@ -56,6 +56,15 @@ def run_in_a_process(*words: str, home: Path) -> subprocess.CompletedProcess[str
     )
 
 
+def test_a_place_for_runs_that_cannot_be_written_to_is_bad(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SIMWORLDS_HOME", "/proc/nothing")
+    *_, (_, room) = doctor_checks.checks(doctor_checks.BlenderChoice(blender_exe=Path("/nowhere/blender")))
+    found = room()
+    assert (found.name, found.state) == ("Room", "bad")
+    assert "/proc cannot be written to" in found.text
+    assert "SIMWORLDS_HOME" in found.advice
+
+
 def findings(done: subprocess.CompletedProcess[str]) -> dict[str, dict[str, Any]]:
     return {finding["name"]: finding for finding in json.loads(done.stdout)["findings"]}
 

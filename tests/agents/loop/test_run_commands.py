@@ -15,6 +15,7 @@ from team import ABORT, Team
 
 from agents.loop.journal import NAME
 from simworlds.cli import main
+from simworlds.own_command import own_command
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -84,7 +85,7 @@ def test_a_limit_that_is_reached_is_exit_code_3(home: Path, tmp_path: Path) -> N
         words = ("--max-cost", 0, "--quiet")
         code, _, err = live("make", "A crate", "--run", root, *words)
         assert code == 3, err
-        assert f"Continue with: simworlds resume {root}" in err
+        assert f"Continue with: {own_command()} resume {root}" in err
         assert live("resume", root, *words)[0] == 3
         assert not api.requests
 

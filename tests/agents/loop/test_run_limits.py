@@ -18,6 +18,7 @@ from agents.loop.errors import NoRun
 from agents.loop.journal import NAME, read_rows
 from agents.loop.leaving import LATEST
 from agents.loop.options import RunLimits
+from simworlds.own_command import own_command
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -182,7 +183,7 @@ def test_signals_stop_a_run_gently_then_at_once_and_it_can_be_gone_on_with(
         code, _, err = at_work[-1].end()
         assert code == 3, err
         assert "Stopped: You asked the run to stop." in err
-        assert f"Continue with: simworlds resume {root}" in err
+        assert f"Continue with: {own_command()} resume {root}" in err
         assert [row["type"] for row in read_rows(root / NAME)][-2:] == ["stage.began", "run.ended"]
 
         if IS_WHOLE:

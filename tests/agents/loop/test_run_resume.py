@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+import shlex
 import shutil
 from collections import Counter
 from typing import TYPE_CHECKING, Any
@@ -277,3 +278,12 @@ def test_run_resumes_after_a_full_disk(
     assert played.taken == [("modeling", "abort")]
     unheard = asked - len([row for row in played.rows[:room] if row["type"] == "model.answered"])
     assert len(api.requests) == len(played.of("model.answered")) + unheard
+
+
+def test_the_command_that_continues_a_run_can_be_pasted(tmp_path: Path) -> None:
+    run = tmp_path / "run dö"
+    run.mkdir()
+    (run / NAME).touch()
+    with pytest.raises(NoRun, match="continue the run in it") as refused:
+        sit(run)
+    assert shlex.split(str(refused.value))[-2:] == ["resume", str(run)]

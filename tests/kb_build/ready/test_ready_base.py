@@ -119,6 +119,13 @@ def changed_base(content: bytes, folder: Path, *statements: str) -> bytes:
     return packed(described({**members, "base.sqlite": path.read_bytes()}))
 
 
+def test_a_folder_in_the_place_of_the_base_is_told_before_anything_is_fetched(tmp_path: Path) -> None:
+    target = tmp_path / "kb" / "blender-5.1.sqlite"
+    target.mkdir(parents=True)
+    with pytest.raises(KBBuildError, match=r"is a folder.*Remove it"):
+        fetch_base("5.1", str(tmp_path / "absent.tar.xz"), home=tmp_path)
+
+
 def refused(tmp_path: Path, content: bytes, minor: str) -> str:
     """What a file with that content is refused with; nothing of it stays."""
     path, home = tmp_path / "given.tar.xz", tmp_path / "home"

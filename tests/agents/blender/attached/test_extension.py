@@ -118,7 +118,7 @@ def test_blender_as_a_package_loads_all_of_it(version: str, tmp_path: Path) -> N
 
 def test_a_program_that_is_no_blender_is_told(tmp_path: Path) -> None:
     result = CliRunner().invoke(command, ["install", "--blender-exe", sys.executable])
-    assert result.exit_code == 1
+    assert result.exit_code == 2
     assert "tells no version of a Blender" in result.output
     gone = CliRunner().invoke(command, ["install", "--blender-exe", str(tmp_path / "none")])
     assert "cannot be started" in gone.output

@@ -116,6 +116,9 @@ def test_several_files_have_one_log_and_the_worst_exit_code(session: LiveSession
     done = verify(tmp_path, "sound.blend", "missing.blend", "--json")
     assert done.returncode == 2
     assert "of one file" in done.stderr
+    done = verify(tmp_path, "sound.blend", "--json", "--sarif")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "--json and --sarif exclude each other" in done.stderr
 
 
 def test_findings_are_1_and_come_as_table_json_and_picture(session: LiveSession, tmp_path: Path) -> None:
@@ -128,6 +131,9 @@ def test_findings_are_1_and_come_as_table_json_and_picture(session: LiveSession,
     assert measured == {"V1": pytest.approx(0.012, abs=1e-5), "V2": pytest.approx(0.01, abs=1e-5)}
     with Image.open(tmp_path / "seen.png") as picture:
         assert picture.width > 900
+    done = verify(tmp_path, "broken.blend", "--rules", "V1", "--image", "/proc/seen.png")
+    assert done.returncode == 2
+    assert "Error: no image could be made: /proc/seen.png cannot be written" in done.stderr
     done = verify(tmp_path, "broken.blend", "--rules", "v1,C")
     assert done.returncode == 1
     assert "Leg · Slab" in done.stdout
@@ -190,7 +196,7 @@ def test_two_hundred_unorganised_primitives_get_a_useful_report_in_seconds(
     assert len(lines) < 45  # folded
     assert any(f"hard ×{len(crossing)}" in line for line in lines)
     assert any("no collection has the tag protocol_role" in line for line in lines)
-    assert any("blender_group" in line for line in lines)
+    assert "of whose tags this scene has none" in " ".join(lines)
 
 
 def test_numbered_meshes_that_are_in_no_object_are_one_row(unorganised: Path, tmp_path: Path) -> None:

@@ -326,12 +326,25 @@ def test_what_was_not_checked_is_told_with_its_reason() -> None:
         ),
         checked("C1", "W4", "R1", "R6", "R8"),
     )
-    assert lines[:3] == [
+    assert lines == [
         "Checked: W4.",
         "Passed: W4.",
         f"Not checked: C1 ({NO_ROLES}); R1 (no plan was given); R6, R8 (nothing to judge).",
     ]
-    assert "blender_group" in lines[3]
+
+
+def test_a_scene_without_tags_is_told_first_by_what_it_is_judged() -> None:
+    found, scope = (
+        report(homeless("Cube"), passed=("V2", "W4"), C1=NO_ROLES),
+        checked("C1", "C3", "V2", "W4", file="room.blend"),
+    )
+    told = " ".join(shown(found, scope, width=400).split())
+    assert told.index("gaps and missing support are not checked") < told.index("Not ok")
+    assert "What needs no tags: penetration (V2), camera (W4)." in told
+    assert "simworlds verify room.blend --rules V2,W4" in told
+    assert "blender_group" not in told
+    assert "blender_group" in as_text(found, scope)
+    assert "tags" not in shown(report(passed=("W4",)), checked("W4"))
 
 
 def test_what_was_not_decided_does_not_count_as_checked() -> None:
