@@ -8,9 +8,8 @@ import time
 
 import bpy
 
-from simworlds.sandbox.inside.refusal import Refused
-
-from ..blend.names import nearest, quoted
+from ..blend.named_objects import objects_named
+from ..blend.names import quoted
 from ..blend.protocol_tags import object_collections
 from ..state.still_digest import digest_of, lasting_digest
 from .fixed_views import SCENE, PreviewRenderer, at_frame, copy_of, note_missing
@@ -203,23 +202,11 @@ def _asked_groups(scene, arguments):
 
 
 def _groups(scene, names):
-    """{title: names of Blender's objects}: of the protocol's objects, or of those with these names. Raises Refused."""
-    tagged = {one.name: {obj.name for obj in one.all_objects} for one in object_collections(scene)}
-    collections = {
-        one.name: {obj.name for obj in one.all_objects} for one in scene.collection.children_recursive
-    }
-    single = {obj.name: {obj.name} for obj in scene.objects}
-    if not names:
-        return tagged or single
-    known = single | collections | tagged
-    for name in names:
-        if name not in known:
-            near = nearest(name, list(known), 4)
-            raise Refused(
-                f"There is no object {name!r} in the scene {scene.name!r}."
-                + (f" Nearest: {quoted(near, 4)}." if near else "")
-            )
-    return {name: known[name] for name in names}
+    """{title: names of Blender's objects}: of these names, none: of all objects of the protocol, lacking those, of all
+    of Blender's. Raises Refused.
+    """
+    names = names or [one.name for one in object_collections(scene)] or scene.objects.keys()
+    return {name: {obj.name for obj in objects} for name, objects in objects_named(scene, names).items()}
 
 
 def _present(groups, subject, notes):
