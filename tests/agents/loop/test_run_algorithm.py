@@ -191,7 +191,7 @@ def test_what_the_plan_states_wrongly_is_withdrawn_once_mending_was_tried(
         in words_of(told)
     )
     assert (
-        "Withdrawn by the planner, and not counted: R3 Crate, Table; R5 Crate (no other is hard)."
+        "Withdrawn by the planner, and not counted: R3 Crate, Crate root; R5 Crate, Floor (no other is hard)."
         in last_words(told)
     )
 
