@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from simworlds.llm.messages import Block
 
 T = TypeVar("T")
+_MOST_TELLING = 200
 _MENDED = (
     "This is the result after what you asked for was mended. There is no further round: accept, and say in the summary "
     "what is mended, what is not, and what is worse than before."
@@ -131,6 +132,9 @@ class LastStage:
         if film is not None:
             film = settled_film(run, film, number, minutes)
             asked |= {"samples": film.samples, "width": film.width, "height": film.height}
+        if self._task.plan is not None and asked["kind"] == "animation":
+            begun = sorted({phase.start for phase in self._task.plan.motion.phases})
+            asked["telling"] = begun[:_MOST_TELLING]
         outcome = run.use(RUNNER, "render", RENDER, asked)
         if outcome.failed:
             raise NotRendered(f"The scene could not be rendered: {outcome.text}")
