@@ -41,7 +41,7 @@ class Withdrawal(PlanPart):
     says: str = Field(
         default="",
         max_length=200,
-        description="Words of its message, as the name of its phase, where others about these objects are to stay.",
+        description="Words of its message; others stay.",
     )
 
     def covers(self, finding: Mapping[str, Any]) -> bool:
