@@ -59,8 +59,7 @@ def evidence(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
     if task.edit:
         shown.blocks += edit_comparison(run, stage, task)
     elif stage == "camera":
-        frames = _telling_frames(task, run.motion)
-        shown.take(_MATERIALS, {"show": "scene", "width": _width(task), "frames": frames})
+        shown.take(_MATERIALS, {"show": "scene", "frames": _telling_frames(task, run.motion)})
     elif stage == "light":
         for frame in _telling_frames(task, run.motion):
             shown.take(RENDER, _again(still(f"look-{frame}", frame, _width(task))))
@@ -89,15 +88,11 @@ class _Shown:
 
 def _show_materials(shown: _Shown, task: RunTask, first: Sequence[str]) -> None:
     """All in its materials; of an edit, alone only what its plan names and what it has added."""
-    asked: dict[str, Any] = {"width": WIDTH} | ({"first": list(first)} if first else {})
     if task.edit:
-        shown.take(
-            _MATERIALS,
-            {**asked, "first": list(task.targets)[:_MOST_TARGETS], "only_first": True},
-            task.old_objects,
-        )
+        asked = {"first": list(task.targets)[:_MOST_TARGETS], "only_first": True}
+        shown.take(_MATERIALS, asked, task.old_objects)
     else:
-        shown.take(_MATERIALS, asked)
+        shown.take(_MATERIALS, {"first": list(first)} if first else {})
 
 
 def _width(task: RunTask) -> int:

@@ -11,11 +11,12 @@ from agents.loop.edit.declared_mechanisms import undeclared
 from agents.loop.events import Reviewed, Verified
 from agents.loop.evidence import evidence, moves
 from agents.loop.run import VERIFIER, VERIFY
+from agents.loop.withdrawals import as_soft
 from agents.plan.tactical import Review
 from simworlds.llm.errors import Declined, Misfit
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Sequence
 
     from agents.loop.run import Run
     from agents.loop.task import Finding, RunTask
@@ -59,19 +60,10 @@ def verify(run: Run, stage: Stage, task: RunTask) -> VerifierVerdict:
     return without(VerifierVerdict(text, tuple(findings)), run.withdrawn)
 
 
-def without(verdict: VerifierVerdict, withdrawn: Iterable[Withdrawal]) -> VerifierVerdict:
+def without(verdict: VerifierVerdict, withdrawn: Sequence[Withdrawal]) -> VerifierVerdict:
     """The verdict with findings about what the plan no longer states as soft ones."""
-    covers = [one.covers for one in withdrawn]
-    gone = [
-        one for one in verdict.findings if any(covered(one["rule"], one["objects"]) for covered in covers)
-    ]
-    if not gone:
-        return verdict
-    told = "; ".join(f"{one['rule']} {', '.join(one['objects'])}" for one in gone)
-    text = f"Withdrawn by the planner, and not counted: {told}.\n{verdict.text}"
-    return VerifierVerdict(
-        text, tuple({**one, "severity": "soft"} if one in gone else one for one in verdict.findings)
-    )
+    findings, told = as_soft(verdict.findings, withdrawn)
+    return VerifierVerdict(f"{told}\n{verdict.text}", tuple(findings)) if told else verdict
 
 
 def _undecided(why: str, task: RunTask) -> VerifierVerdict:

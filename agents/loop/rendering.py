@@ -14,6 +14,7 @@ from agents.loop.film_time import is_time_to_mend, minutes_of
 from agents.loop.judging import note_verdict, verify
 from agents.loop.pictures import link, pictures_of
 from agents.loop.run import RENDER, RUNNER
+from agents.loop.withdrawals import format_withdrawn
 from agents.plan.tactical import FilmDecision, FinalReview
 from agents.roles.coder import Coder
 from agents.roles.final_reviewer import final_review
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from simworlds.llm.messages import Block
 
 T = TypeVar("T")
+_MOST_TELLING = 200
 _MENDED = (
     "This is the result after what you asked for was mended. There is no further round: accept, and say in the summary "
     "what is mended, what is not, and what is worse than before."
@@ -130,6 +132,9 @@ class LastStage:
         if film is not None:
             film = settled_film(run, film, number, minutes)
             asked |= {"samples": film.samples, "width": film.width, "height": film.height}
+        if self._task.plan is not None and asked["kind"] == "animation":
+            begun = sorted({phase.start for phase in self._task.plan.motion.phases})
+            asked["telling"] = begun[:_MOST_TELLING]
         outcome = run.use(RUNNER, "render", RENDER, asked)
         if outcome.failed:
             raise NotRendered(f"The scene could not be rendered: {outcome.text}")
@@ -162,11 +167,8 @@ class LastStage:
             content.append(Text(_MENDED))
         if rendering.film is not None and self._plan is not None:
             content.append(Text(quality_of(rendering.film, self._plan, self._run.samples, rendering.samples)))
-        if self._run.withdrawn:
-            told = "; ".join(map(str, self._run.withdrawn))
-            content.append(
-                Text(f"The planner took back what the plan says where these rules found it broken: {told}.")
-            )
+        if told := format_withdrawn(self._run.withdrawn):
+            content.append(Text(told))
         if compared_with := _in_film(rendering, task):
             content += compared(self._run, task, compared_with)
         for path, picture in rendering.shown:
@@ -194,7 +196,7 @@ class LastStage:
         run.attempt = self._attempt
         run.roll_back("render", before, self._last)
         coder = Coder(run.context, "render", task.plan_text, edit=task.edit)
-        worked = run.attempted("render", self._attempt, lambda: coder.fix(instructions, run.state("render")))
+        worked = run.attempted("render", self._attempt, lambda: coder.fix(instructions, self._standing()))
         verdict = verify(run, "render", task)
         note_verdict(run, "render", self._attempt, verdict)
         if verdict.ok and worked.how == "done":
@@ -206,6 +208,11 @@ class LastStage:
             return True
         run.roll_back("render", self._attempt, self._last)
         return False
+
+    def _standing(self) -> str:
+        """How the scene stands, and what of the plan is not to be mended."""
+        told = format_withdrawn(self._run.withdrawn, to_builder=True)
+        return "\n\n".join(filter(None, (told, self._run.state("render"))))
 
 
 def quality_of(film: FilmSettings, plan: RenderSettings, asked: int | None, made: int | None) -> str:

@@ -36,6 +36,7 @@ from agents.loop.events import (
 from agents.loop.interruptible import Interruptible
 from agents.loop.telling_frames import MeasuredMotion
 from agents.loop.tool_client import ToolOutcome
+from agents.loop.withdrawals import as_soft
 from agents.roles import coder, reviewer
 from agents.roles.base import RoleContext
 from simworlds.files import write_whole
@@ -439,9 +440,13 @@ class RoleTools:
         outcome = self._run.use(self._role, self._stage, call.name, call.input, known)
         if self._role == coder.NAME and call.name == RENDER and not outcome.failed:
             self._run.keep_stills(outcome)
-        if task is not None and task.known and "findings" in outcome.data:
-            found, text = told_since(task.known, outcome)
-            return ToolResult(call.id, (Text(text), *(outcome.pictures if found else ())))
+        if task is not None and "findings" in outcome.data:
+            findings, text = told_since(task.known, outcome)
+            _, withdrawn = as_soft(findings, self._run.withdrawn)
+            if withdrawn:
+                text = f"{withdrawn}\n{text}"
+            if withdrawn or task.known:
+                return ToolResult(call.id, (Text(text), *(outcome.pictures if findings else ())))
         return ToolResult(call.id, outcome.content, outcome.failed)
 
 

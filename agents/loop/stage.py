@@ -10,6 +10,7 @@ from agents.loop.errors import Aborted, NotSaved
 from agents.loop.events import Decided, StageMoved, TacticMade, Withdrew
 from agents.loop.judging import format_review, judge, review, still_open, verify, without
 from agents.loop.topic_page import topic_page
+from agents.loop.withdrawals import format_withdrawn
 from agents.plan.tactical import Decision
 from agents.roles.coder import Coder
 from agents.roles.reviewer import Reviewer
@@ -109,7 +110,8 @@ class StageLoop:
         run, stage = self._run, self._stage
         run.attempt = attempt
         lost = run.unused_since() if self._task.edit else ""
-        state = "\n\n".join(filter(None, (run.time_left(stage, attempt), lost, run.state(stage))))
+        gone = format_withdrawn(run.withdrawn, to_builder=True)
+        state = "\n\n".join(filter(None, (run.time_left(stage, attempt), gone, lost, run.state(stage))))
         tactic = replan.tactic if replan else None
         if tactic is None:
             why = f"The last plan did not do: {replan.reason}" if replan else ""

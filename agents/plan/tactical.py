@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -10,7 +10,7 @@ from agents.plan.acceptance import AcceptanceAnswer
 from agents.plan.part import Name, PlanPart, Stage
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Mapping
 
 
 class Asset(PlanPart):
@@ -38,13 +38,22 @@ class Withdrawal(PlanPart):
 
     rule: str = Field(pattern=r"^[RT]\d+$", description="A rule that compares with the plan: R…, T….")
     objects: tuple[str, ...] = Field(min_length=1, description="Objects of the finding, as it names them.")
+    says: str = Field(
+        default="",
+        max_length=200,
+        description="Words of its message; others stay.",
+    )
 
-    def covers(self, rule: object, objects: Iterable[object]) -> bool:
+    def covers(self, finding: Mapping[str, Any]) -> bool:
         """Whether a finding is about this."""
-        return rule == self.rule and set(self.objects) <= set(objects)
+        return (
+            finding["rule"] == self.rule
+            and set(self.objects) <= set(finding["objects"])
+            and self.says in finding["message"]
+        )
 
     def __str__(self) -> str:
-        return f"{self.rule} {', '.join(self.objects)}"
+        return f"{self.rule} {', '.join(self.objects)}" + (f" ({self.says})" if self.says else "")
 
 
 class Decision(PlanPart):

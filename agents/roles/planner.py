@@ -190,9 +190,9 @@ def _withdrawal_faults(decision: Decision, attempt: int, hard: Sequence[Mapping[
     if attempt == 1:
         return ["withdraw: this is the first attempt; have it mended first."]
     return [
-        f"withdraw[{place}]: there is no hard finding of {one.rule} about {', '.join(one.objects)}."
+        f"withdraw[{place}]: there is no hard finding of {one}."
         for place, one in enumerate(decision.withdraw)
-        if not any(one.covers(finding["rule"], finding["objects"]) for finding in hard)
+        if not any(one.covers(finding) for finding in hard)
     ]
 
 

@@ -15,10 +15,16 @@ if TYPE_CHECKING:
     from agents.plan.edit import EditedActor
     from agents.plan.scene import ScenePlan
 
-Solver = Literal["cloth", "soft", "rigid", "liquid", "gas", "particles"]
+Solver = Literal["cloth", "soft", "rigid", "liquid", "gas", "particles", "wind"]
 SOLVERS: tuple[Solver, ...] = get_args(Solver)
 _FOLDER = Path(__file__).with_name("prompts") / "sheets"
-_BY_ROLE: dict[str, Solver] = {"cloth": "cloth", "soft": "soft", "rigid": "rigid", "emitter": "particles"}
+_BY_ROLE: dict[str, Solver] = {
+    "cloth": "cloth",
+    "soft": "soft",
+    "rigid": "rigid",
+    "emitter": "particles",
+    "force": "wind",
+}
 _BY_KIND: dict[str, tuple[Solver, ...]] = {
     "sim_cloth": ("cloth",),
     "sim_soft": ("soft",),

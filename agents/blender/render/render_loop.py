@@ -10,6 +10,7 @@ from agents.blender.render.frame_cache import RenderedFrame
 from simworlds.sandbox.errors import BlenderError, Interrupted
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
     from pathlib import Path
 
     from agents.blender.render.frame_cache import FrameCache
@@ -69,14 +70,19 @@ class RenderOutcome:
         return sorted({*self.made, *self.kept})
 
 
-def render_frames(
+def render_frames(  # noqa: PLR0913 - what to render, with what, in which time
     renderer: FrameRenderer,
     store: FrameCache | StillStore,
     frames: list[int],
     call: Call,
     budget: RenderBudget | None,
+    *,
+    telling: Collection[int] = (),
 ) -> RenderOutcome:
-    """Renders those of ``frames`` that are not in ``store``. Raises BlenderError when there is not a single one."""
+    """Renders those of ``frames`` that are not in ``store``. Raises BlenderError when there is not a single one.
+
+    Where time is short, those that are ``telling`` are left out last.
+    """
     wanted: int | None = renderer.shot.samples
     outcome, todo = RenderOutcome(), list[int]()
     for number in frames:
@@ -102,7 +108,7 @@ def render_frames(
         if budget is not None and todo:
             while (few := budget.next_trial(len(todo))) is not None:
                 budget.add_trial(few, render(todo[0], few, trial=True))
-        while (todo := todo or _taken_up_again(budget, outcome)) and not call.cancelled.is_set():
+        while (todo := todo or _taken_up_again(budget, outcome, telling)) and not call.cancelled.is_set():
             samples = wanted
             if budget is not None:
                 budget.fit_samples(len(todo) + len(outcome.dropped))
@@ -111,7 +117,7 @@ def render_frames(
             trial = store.get(number)
             if trial is not None and trial.trial and (trial.samples or 0) >= (samples or 0):
                 store.add(number, replace(trial, trial=False))
-            elif budget is not None and _drop_frames(budget, todo, outcome):
+            elif budget is not None and _drop_frames(budget, todo, outcome, telling):
                 continue
             else:
                 seconds = render(number, samples)
@@ -131,26 +137,42 @@ def render_frames(
     return outcome
 
 
-def _drop_frames(budget: RenderBudget, todo: list[int], outcome: RenderOutcome) -> bool:
-    """Drops the frames for which there is no time, evenly; whether there are any. At least one frame is rendered."""
+def _drop_frames(
+    budget: RenderBudget, todo: list[int], outcome: RenderOutcome, telling: Collection[int]
+) -> bool:
+    """Drops the frames for which there is no time, evenly, ``telling`` ones last; whether there are any.
+
+    At least one frame is rendered.
+    """
     count = budget.affordable(len(todo))
     if count == len(todo):
         return False
     is_first = not outcome.available
-    stay = _spread(todo, max(count, int(is_first)), with_first=is_first)
+    stay = _chosen(todo, max(count, int(is_first)), telling, with_first=is_first)
     outcome.dropped += sorted({*todo} - {*stay})
     todo[:] = stay
     return True
 
 
-def _taken_up_again(budget: RenderBudget | None, outcome: RenderOutcome) -> list[int]:
-    """Dropped frames for which there turned out to be time, evenly from all."""
+def _taken_up_again(
+    budget: RenderBudget | None, outcome: RenderOutcome, telling: Collection[int]
+) -> list[int]:
+    """Dropped frames for which there turned out to be time: ``telling`` ones first, then evenly from all."""
     if budget is None or not outcome.dropped:
         return []
     dropped = sorted(outcome.dropped)
-    again = _spread(dropped, budget.surely_affordable(len(dropped)), with_first=False)
+    again = _chosen(dropped, budget.surely_affordable(len(dropped)), telling, with_first=False)
     outcome.dropped = sorted({*dropped} - {*again})
     return again
+
+
+def _chosen(frames: list[int], count: int, telling: Collection[int], *, with_first: bool) -> list[int]:
+    """So many of the frames, in order: those that are ``telling``, and evenly of the others."""
+    needed = [frame for frame in frames if frame in telling or (with_first and frame == frames[0])]
+    if len(needed) >= count:
+        return _spread(needed, count, with_first=with_first)
+    others = [frame for frame in frames if frame not in needed]
+    return sorted([*needed, *_spread(others, count - len(needed), with_first=False)])
 
 
 def _spread(frames: list[int], count: int, *, with_first: bool) -> list[int]:

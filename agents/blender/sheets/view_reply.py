@@ -12,6 +12,7 @@ _LARGEST = 2048  # pixels a side
 _MOST_NOTES = 60
 _FARTHEST = 1e38
 _File = Annotated[str, Field(pattern=r"^\.(preview|close-up)-\d{1,3}\.png$")]
+Key = Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
 Note = Annotated[str, Field(max_length=2000)]
 Metres = Annotated[float, Field(ge=-_FARTHEST, le=_FARTHEST)]
 Pixel = Annotated[float, Field(ge=-1e15, le=1e15)]
@@ -71,17 +72,20 @@ class PreviewReply(Claim):
 
 
 class LitView(DrawnView):
-    """The scene in neutral light at a ``frame``."""
+    """The scene in neutral light at a ``frame``. Without a ``file`` it is the picture that was kept by its ``key``."""
 
+    file: _File | None  # pyright: ignore[reportIncompatibleVariableOverride]
+    key: Key | None
     frame: Frame
 
 
 class LitObject(Claim):
     """An object alone in neutral light: its ``materials``, which others are ``alike`` and so not shown, and which of
-    its parts are ``bare``: without a material."""
+    its parts are ``bare``: without a material. ``file`` and ``key`` are as in ``LitView``."""
 
     name: Name
-    file: _File
+    file: _File | None
+    key: Key | None
     metres_per_pixel: Scale
     materials: list[Name] = Field(max_length=20)
     alike: list[Name] = Field(max_length=20)

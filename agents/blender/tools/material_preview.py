@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from PIL import Image
 from pydantic import Field
 from pydantic.json_schema import SkipJsonSchema
 
-from agents.blender.formatting import format_list
+from agents.blender.formatting import format_count, format_list
+from agents.blender.render.kept_pictures import KeptPictures
 from agents.blender.sheets import contact_sheet
 from agents.blender.sheets.view_reply import LitObject, MaterialReply
 from agents.blender.sheets.worker_pictures import taken_picture
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
-from agents.blender.tools.preview_files import new_preview
+from agents.blender.tools.preview_files import FOLDER, new_preview
+from simworlds.sandbox.errors import Refusal
 from simworlds.sandbox.replies import Frame
 
 if TYPE_CHECKING:
@@ -49,7 +51,9 @@ class MaterialArguments(Arguments):
         max_length=_MOST_FRAMES,
         description="Of the scene; objects: at the first.",
     )
-    width: int = Field(default=960, ge=64, le=1536, description="Pixels.")
+    width: int | None = Field(
+        default=None, ge=64, le=1536, description="Pixels. Default: the scene's own, at most 960."
+    )
     seconds: float = Field(
         default=150.0,
         ge=1,
@@ -61,12 +65,14 @@ class MaterialArguments(Arguments):
 
 DESCRIPTION = """\
 See materials as they render (Cycles, the file's own shaders and textures) in neutral light: no lamp is needed. \
-Shows the scene through its camera, or in three-quarter view, and each object alone."""
+Shows the scene through its camera, or in three-quarter view, and each object alone. A still of the scene takes up \
+to a minute, an object some seconds; what is unchanged is not rendered again, whoever asks."""
 
 
 def run(context: ToolContext, arguments: MaterialArguments, call: Call) -> Result:
     """Renders the stills, and puts those of objects on a sheet. Raises BlenderError."""
     blender, folder = context.blender, context.blender.folder
+    kept = KeptPictures(folder.root / FOLDER / "materials")
     request = {
         "show": arguments.show,
         "objects": arguments.objects,
@@ -77,6 +83,7 @@ def run(context: ToolContext, arguments: MaterialArguments, call: Call) -> Resul
         "folder": folder.workspace.for_blender(),
         "size": [arguments.width, _PANEL],
         "seconds": arguments.seconds,
+        "kept": kept.keys,
     }
     reply = blender.call(
         "material_sheet",
@@ -87,28 +94,44 @@ def run(context: ToolContext, arguments: MaterialArguments, call: Call) -> Resul
         cancelled=call.cancelled,
     )
     shown = reply.value
-    images = [_scene_picture(blender, view) for view in shown.scene]
+    images = [_scene_picture(blender, kept, view) for view in shown.scene]
     if shown.objects:
-        images.append(new_preview(folder, "materials-objects", contact_sheet.to_png(_sheet(blender, shown))))
+        sheet = _sheet(blender, kept, shown)
+        images.append(new_preview(folder, "materials-objects", contact_sheet.to_png(sheet)))
     data = shown.model_dump(include={"title": True, "notes": True})
     data["objects"] = [
         one.model_dump(include={"name", "materials", "alike", "bare"}) for one in shown.objects
     ]
     data["frames"] = [view.frame for view in shown.scene]
     data["files"] = [str(image.path.relative_to(folder.root)) for image in images]
+    stills = (*shown.scene, *shown.objects)
+    data["kept"] = sum(still.file is None for still in stills)
+    data["rendered"] = len(stills) - data["kept"]
     data["seconds"] = round(reply.seconds, 2)
-    return Result(_text(shown, data["files"]), data, tuple(images))
+    return Result(_text(shown, data), data, tuple(images))
 
 
-def _scene_picture(blender: Supervisor, view: LitView) -> SavedImage:
-    picture = taken_picture(blender, view.file, _BACKGROUND).resize(view.size, Image.Resampling.LANCZOS)
+def _picture(blender: Supervisor, kept: KeptPictures, still: LitView | LitObject) -> Image.Image:
+    """The picture of a still that was rendered now, or kept as it would be."""
+    if still.file is not None:
+        picture = taken_picture(blender, still.file, _BACKGROUND)
+        if still.key is not None:
+            kept.keep(still.key, picture)
+        return picture
+    if still.key is None:
+        raise Refusal(f"Blender has made no picture of {still.name}.")
+    return kept.get(still.key)
+
+
+def _scene_picture(blender: Supervisor, kept: KeptPictures, view: LitView) -> SavedImage:
+    picture = _picture(blender, kept, view).resize(view.size, Image.Resampling.LANCZOS)
     return new_preview(blender.folder, f"materials-frame-{view.frame}", contact_sheet.to_png(picture))
 
 
-def _sheet(blender: Supervisor, shown: MaterialReply) -> Image.Image:
+def _sheet(blender: Supervisor, kept: KeptPictures, shown: MaterialReply) -> Image.Image:
     panels: list[contact_sheet.Panel] = []
     for one in shown.objects:
-        picture = taken_picture(blender, one.file, _BACKGROUND)
+        picture = _picture(blender, kept, one)
         contact_sheet.draw_scale_bar(picture, one.metres_per_pixel)
         panels.append(contact_sheet.Panel(picture, one.name, format_list(one.materials, 2) or "no material"))
     return contact_sheet.sheet(
@@ -120,11 +143,22 @@ def _sheet(blender: Supervisor, shown: MaterialReply) -> Image.Image:
     )
 
 
-def _text(shown: MaterialReply, files: list[str]) -> str:
+def _text(shown: MaterialReply, data: dict[str, Any]) -> str:
+    files = data["files"]
     lines = ["In neutral light, not the scene's:"]
     lines += [f"- frame {view.frame}, {_seen_by(view)}" for view in shown.scene]
     lines += [_line(one) for one in shown.objects]
     lines += [f"- {note}" for note in shown.notes]
+    lines += (
+        [f"Rendered: {format_count(data['rendered'], 'still')} in {data['seconds']:.0f} s."]
+        if data["rendered"]
+        else []
+    )
+    lines += (
+        [f"Shown as before, since nothing has changed: {format_count(data['kept'], 'still')}."]
+        if data["kept"]
+        else []
+    )
     return "\n".join([*lines, f"Saved as {format_list(files, len(files))}."])
 
 

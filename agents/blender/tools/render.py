@@ -63,6 +63,8 @@ class RenderArguments(Arguments):
     video: bool = Field(default=True, description="Make an MP4 of an animation.")
     # Not for models: a still of this name that would look the same is shown again.
     keep: SkipJsonSchema[bool] = False
+    # Not for models: frames of an animation that are left out last.
+    telling: SkipJsonSchema[list[_Frame]] = Field(default_factory=list[int], max_length=_LISTED)
     timeout: float = Field(default=900.0, ge=1, le=86400, description="Seconds for one frame.")
 
     @model_validator(mode="after")
@@ -130,7 +132,7 @@ def _animation(
     budget = _budget(renderer, arguments)
     cache = FrameCache(folder, renderer.plan.scene, renderer.shot.settings)
     frames = list(range(first, last + 1, arguments.step))
-    outcome = render_frames(renderer, cache, frames, call, budget)
+    outcome = render_frames(renderer, cache, frames, call, budget, telling=arguments.telling)
     rendered = [frame for number in outcome.available if (frame := cache.get(number))]
     fewest = min((frame.samples or 0 for frame in rendered), default=0)
     data = _data(renderer, arguments, outcome, fewest or None)

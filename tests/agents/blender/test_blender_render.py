@@ -636,6 +636,22 @@ def test_frames_that_were_dropped_are_made_where_there_turns_out_to_be_time(
     assert made == 48 or clock.now >= seconds * 0.85  # the time is used
 
 
+@pytest.mark.parametrize(("seconds", "slow"), [(45, 2), (20, 0), (12, 0)])
+def test_frames_that_tell_what_happens_are_left_out_last(tmp_path: Path, seconds: float, slow: int) -> None:
+    clock = Clock(0, 0)
+    telling = [1, 18, 19, 40]
+    outcome = render_frames(
+        Waiting(clock, slow),  # type: ignore[arg-type]
+        Kept(tmp_path),  # type: ignore[arg-type]
+        list(range(1, 49)),
+        Call(),
+        RenderBudget(seconds, None, clock),
+        telling=telling,
+    )
+    assert outcome.dropped
+    assert {*telling} <= {*outcome.available}
+
+
 def test_a_little_too_little_time_costs_a_few_frames_evenly_apart(tmp_path: Path) -> None:
     clock = Clock(0, 0)
     frames = list(range(1, 145))

@@ -90,9 +90,9 @@ def test_of_an_edit_the_materials_of_what_it_does_not_name_are_not_shown() -> No
     edited = RunTask("", edit=True, targets=("Mug", "Glaze"), old=("Mug", "Table"))
     evidence(cast("Run", asked), "texture", edited)
     shown = asked.calls["blender_material_preview"]
-    assert shown == {"width": 960, "first": ["Mug", "Glaze"], "only_first": True, "old": ["Mug", "Table"]}
+    assert shown == {"first": ["Mug", "Glaze"], "only_first": True, "old": ["Mug", "Table"]}
     evidence(cast("Run", asked), "texture", RunTask(""))
-    assert asked.calls["blender_material_preview"] == {"width": 960}
+    assert asked.calls["blender_material_preview"] == {}
 
 
 def test_of_an_edit_motion_is_shown_in_its_stage_alone() -> None:

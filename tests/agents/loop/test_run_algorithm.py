@@ -8,7 +8,10 @@ import crates
 import pytest
 import teams
 from run_sessions import scenes
-from team import ABORT, DONE, FINE, REPLAN, RETRY, Team, last_words, run, turn_of, whose, words_of
+from team import ABORT, DONE, FINE, REPLAN, RETRY, Team, call, last_words, run, turn_of, whose, words_of
+
+from agents.loop.withdrawals import as_soft
+from agents.plan.tactical import Withdrawal
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -166,7 +169,10 @@ def test_what_the_plan_states_wrongly_is_withdrawn_once_mending_was_tried(
         "withdraw": [{"rule": "R5", "objects": ["Crate"]}, {"rule": "R3", "objects": ["Crate"]}],
     }
     team = Team(
-        coder={"modeling": (run(crates.FLOATING), DONE), "camera": (run(crates.CAMERA), DONE)},
+        coder={
+            "modeling": (run(crates.FLOATING), DONE),
+            "camera": (run(crates.CAMERA), call("blender_verify"), DONE),
+        },
         decisions={"modeling": (RETRY, withdraw), "camera": (ABORT,)},
         reviewer={"modeling": (FINE,)},
     )
@@ -179,6 +185,32 @@ def test_what_the_plan_states_wrongly_is_withdrawn_once_mending_was_tried(
     assert {one["rule"]: one["severity"] for one in later["findings"]}["R5"] == "soft"
     heard = [words_of(request) for request in played.requests if whose(request) == ("planner", "camera")]
     assert any("Withdrawn by the planner, and not counted: R3 " in words for words in heard)
+    *_, told = [request for request in played.requests if whose(request) == ("coder", "camera")]
+    assert (
+        "find it broken: R5 Crate; R3 Crate. It is measured all the same, and not to be mended."
+        in words_of(told)
+    )
+    assert (
+        "Withdrawn by the planner, and not counted: R3 Crate, Crate root; R5 Crate, Floor (no other is hard)."
+        in last_words(told)
+    )
+
+
+def test_a_part_of_what_a_rule_finds_is_withdrawn() -> None:
+    waits, rests = (
+        {
+            "rule": "T7",
+            "severity": "hard",
+            "objects": ["Bucket"],
+            "message": f"motion.phases[{at}] ('{name}'): it moves.",
+        }
+        for at, name in enumerate(("bucket waits", "bucket rests"))
+    )
+    one = Withdrawal(rule="T7", objects=("Bucket",), says="'bucket waits'")
+    findings, told = as_soft([waits, rests], [one])
+    assert [finding["severity"] for finding in findings] == ["soft", "hard"]
+    assert told == "Withdrawn by the planner, and not counted: T7 Bucket (1 hard beside it)."
+    assert str(one) == "T7 Bucket ('bucket waits')"
 
 
 def test_when_retries_are_used_up_the_run_is_given_up(play: Callable[..., Played]) -> None:

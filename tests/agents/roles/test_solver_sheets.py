@@ -200,6 +200,34 @@ def column():
 
 over(12, column)
 """
+# A flag in gusts, and a body that falls past it.
+WIND = """
+def flag():
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=20, y_subdivisions=12, size=1)
+    made = bpy.context.object
+    for vertex in made.data.vertices:
+        vertex.co = (vertex.co.x + 0.5, 0, 2 + 0.6 * vertex.co.y)
+    return made
+
+sheet, body = flag(), ball("Body", 0.1, (3, 0, 5))
+settings = cloth(sheet, [], [v.index for v in sheet.data.vertices if v.co.x < 0.01]).settings
+settings.mass = 0.1
+sheet.modifiers[-1].collision_settings.use_self_collision = False
+bpy.ops.rigidbody.object_add()
+scene.rigidbody_world.effector_weights.wind = 0
+blower = bpy.data.objects.new("Blower", None)
+scene.collection.objects.link(blower)
+blower.location = (-1, 0, 2)
+wind(blower, (0.97, 0.25, 0), 3000, [(1, 1), (24, 1), (36, 0.1), (60, 0.1), (72, 1)])
+free = [v.index for v in sheet.data.vertices if v.co.x > 0.99]
+
+def edge():
+    places = points(sheet)
+    middle = [mean([places[index][axis] for index in free]) for axis in range(2)]
+    return [round(value, 3) for value in (*middle, body.matrix_world.translation.x)]
+
+over(96, edge)
+"""
 PARTICLES = """
 emitter = box("Emitter", (0.2, 0.2, 0.05), (0, 0, 0.5))
 floor = box("Floor", (4, 4, 0.2), (0, 0, -0.1))
@@ -333,6 +361,7 @@ def test_smoke_rises_from_its_source_below_the_lid(blender: LiveSession) -> None
     assert tops[0] + 0.1 < tops[-1] <= 1
 
 
+<<<<<<< HEAD
 def test_a_gas_has_no_walls_as_its_sheet_says(blender: LiveSession) -> None:
     assert "The lid and the sides are open" in sheet("gas")
     borders = """
@@ -340,6 +369,16 @@ settings = gas(box("Domain", (1, 1, 1), (0, 0, 0)), ball("Source", 0.1, (0, 0, 0
 [name for name in dir(settings) if name.startswith("use_collision_border_") and getattr(settings, name)]
 """
     assert tried(blender, "gas", borders) == []
+=======
+def test_a_flag_flies_in_gusts_and_hangs_between_them(blender: LiveSession) -> None:
+    seen = blender.run(f"{HELPERS}\n{recipe('cloth')}\n{recipe('wind')}\n{WIND}")
+    reach, across, past = zip(*seen, strict=True)
+    assert min(reach[18:24]) > 0.6, "it flies"
+    assert max(across[12:36]) - min(across[12:36]) > 0.2, "it flutters"
+    assert max(reach[54:60]) < 0.5, "it hangs in the lull"
+    assert max(reach[80:]) > 0.6, "the next gust raises it"
+    assert max(past) == pytest.approx(3, abs=0.01), "what has no weight for wind falls straight down"
+>>>>>>> e14da330d55fdec8c354d9e0a55ff61bece01914
 
 
 def test_particles_come_to_rest_on_a_floor_and_stay(blender: LiveSession) -> None:
@@ -397,13 +436,14 @@ def test_a_plans_roles_name_its_solvers() -> None:
                 planned("Sparks", "emitter"),
                 planned("Flag", "cloth"),
                 planned("Brick", "rigid"),
+                planned("Breeze", "force"),
             ],
             "lighting": [{"name": "Sun", "kind": "sun", "energy": 3}],
             "camera": {"position": (0, -5, 2), "target": (0, 0, 0)},
             "render": {"kind": "still"},
         }
     )
-    assert solvers_of(plan) == ("cloth", "rigid", "gas", "particles")
+    assert solvers_of(plan) == ("cloth", "rigid", "gas", "particles", "wind")
     water = ScenePlan.model_validate({**plan.model_dump(), "objects": [planned("Water", "fluid")]})
     assert solvers_of(water) == ("liquid",)
     drape = EditedActor(name="Drape", deformation_kind="sim_cloth", motion_kind="bake")

@@ -10,7 +10,8 @@ from mathutils import Matrix
 from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.file_io import reason
-from ..blend.names import nearest, quoted
+from ..blend.named_objects import objects_named
+from ..blend.names import quoted
 from .read import load_marked
 
 _STEP = 320  # between nodes
@@ -236,11 +237,8 @@ def _as_opengl(tree, colour):
 
 def _targets(names):
     """The objects of these names. Raises Refused."""
-    for name in names:
-        if name not in bpy.data.objects:
-            near = quoted(nearest(name, bpy.data.objects.keys()), 3)
-            raise Refused(f"There is no object {name!r}.{f' Nearest: {near}.' if near else ''}")
-    return [bpy.data.objects[name] for name in names]
+    named = objects_named(bpy.context.scene, names)
+    return list(dict.fromkeys(obj for objects in named.values() for obj in objects))
 
 
 def _assign(material, objects):

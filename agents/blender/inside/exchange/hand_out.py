@@ -9,7 +9,8 @@ import bpy
 from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.cache_folders import unused_name
-from ..blend.names import nearest, quoted
+from ..blend.named_objects import objects_named
+from ..blend.names import quoted
 from ..blend.temporary import temporary_settings
 from . import formats
 from .facts import describe, is_animated, unbaked
@@ -80,13 +81,8 @@ def _wanted(names):
     if not names:
         return [*layer]
     wanted = {}
-    for name in names:
-        obj, collection = layer.get(name), bpy.data.collections.get(name)
-        if obj is None and collection is None:
-            known = [*layer.keys(), *bpy.data.collections.keys()]
-            near = quoted(nearest(name, known), 3)
-            raise Refused(f"There is no object or collection {name!r}.{f' Nearest: {near}.' if near else ''}")
-        for each in [obj] if collection is None or obj is not None else collection.all_objects:
+    for objects in objects_named(bpy.context.scene, names).values():
+        for each in objects:
             wanted |= dict.fromkeys([each, *each.children_recursive])
     return [obj for obj in wanted if obj.name in layer]
 

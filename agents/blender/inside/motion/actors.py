@@ -10,8 +10,8 @@ from mathutils import Vector
 from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.fluids import domain_of, is_empty_domain
-from ..blend.names import nearest
-from ..blend.protocol_tags import OBJECT, ROLE, ROOT
+from ..blend.named_objects import objects_named
+from ..blend.protocol_tags import ROOT, object_collections
 from ..geometry.evaluated_meshes import coordinates, transformed
 
 _EVALUATES_TO_MESH = {"CURVE", "SURFACE", "META", "FONT"}
@@ -107,23 +107,15 @@ class ActorState:
 
 
 def resolve(names, scene, most=None):
-    """The actors of these names, collections tagged as objects before objects. Raises Refused.
+    """The actors of these names, see ``objects_named``. Raises Refused.
 
     ``most``: about how many points of each are followed; None for all.
     """
     layer = bpy.context.view_layer
-    collections = {collection.name: collection for collection in scene.collection.children_recursive}
-    tagged = {name for name, collection in collections.items() if collection.get(ROLE) == OBJECT}
+    tagged = {one.name for one in object_collections(scene)}
     actors = []
-    for name in names:
-        if name in tagged or (name in collections and name not in scene.objects):
-            objects = list(collections[name].all_objects)
-            kind = "object collection" if name in tagged else "collection"
-        elif name in scene.objects:
-            objects, kind = [scene.objects[name]], "object"
-        else:
-            known = dict.fromkeys([*sorted(tagged), *scene.objects.keys(), *collections])
-            raise Refused(_unknown(name[:100], list(known)))
+    for name, objects in objects_named(scene, names).items():
+        kind = "object collection" if name in tagged else "object" if name in scene.objects else "collection"
         if not objects:
             raise Refused(f"The collection {name!r} is empty.")
         there = [obj for obj in objects if obj.name in layer.objects]
@@ -131,14 +123,6 @@ def resolve(names, scene, most=None):
             raise Refused(f"{name!r} is not in the view layer {layer.name!r}, so it does not move.")
         actors.append(Actor(name, kind, _with_geometry(there), most))
     return actors
-
-
-def _unknown(name, known):
-    near = nearest(name, known, 5)
-    hint = f" Nearest: {', '.join(map(repr, near))}." if near else ""
-    if not near and known:
-        hint = f" There are: {', '.join(map(repr, known[:12]))}{' …' if len(known) > 12 else ''}."
-    return f"{name!r} is neither an object nor a collection of this scene.{hint}"
 
 
 def _with_geometry(objects):

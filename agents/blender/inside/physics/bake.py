@@ -12,7 +12,7 @@ import bpy
 from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.file_io import SCENE_FILE, make_own, reason
-from ..blend.names import nearest
+from ..blend.named_objects import objects_named
 from ..blend.temporary import temporary_settings
 from . import bake_inputs, caches, simulated_movement, stepped_frames, stillness_causes
 from .finite_check import Diverged, DivergenceWatch
@@ -160,18 +160,15 @@ def _chosen(scene, every, names):
         )
     if names is None:
         return every
-    there = [obj.name for obj in scene.objects]
-    for name in names:
-        if name not in there:
-            near = ", ".join(map(repr, nearest(name, there)))
-            raise Refused(f"There is no object {name!r} in the scene.{f' Nearest: {near}.' if near else ''}")
-        if not caches.of_objects(scene, [name]):
+    named = objects_named(scene, names)
+    for name, objects in named.items():
+        if not caches.of_objects(scene, [obj.name for obj in objects]):
             have = sorted({cache.object or "the rigid bodies" for cache in every})
             raise Refused(
                 f"{name!r} has no simulation of its own to bake. Objects that have one: {', '.join(have[:_NAMED])}"
                 f"{' …' if len(have) > _NAMED else ''}."
             )
-    return caches.of_objects(scene, names)
+    return caches.of_objects(scene, [obj.name for objects in named.values() for obj in objects])
 
 
 def _frames(scene, first, last):

@@ -8,10 +8,10 @@ import time
 
 import bpy
 
-from simworlds.sandbox.inside.refusal import Refused
-
-from ..blend.names import nearest, quoted
+from ..blend.named_objects import objects_named
+from ..blend.names import quoted
 from ..blend.protocol_tags import object_collections
+from ..state.still_digest import digest_of, lasting_digest
 from .fixed_views import SCENE, PreviewRenderer, at_frame, copy_of, note_missing
 from .framing import VIEWS
 from .lit_studio import LitStudio
@@ -19,9 +19,14 @@ from .scene_copy import DRAWABLE
 
 _THREE_QUARTER = next(view for view in VIEWS if view[0] == "three-quarter")
 OBJECTS = "objects"
+_WIDEST = 960  # pixels of the scene's picture, where no size is asked for
+_NARROWEST = 64
+_ALONE = ("file", "metres_per_pixel")
 _MOST_OBJECTS = 12
 _NAMED = 6
 _LISTED = 20
+_MOST_MADE = 200
+_made = {}  # key of a still → what is said of its picture, latest last
 
 
 def material_sheet(arguments, report):
@@ -29,13 +34,14 @@ def material_sheet(arguments, report):
 
     ``objects``: names of the protocol's objects (lacking those, of Blender's); none: all, alike ones once, those that
     ``first`` names before others, and under ``only_first`` no others: see ``_asked_groups``. ``show``:
-    "all", "scene" or "objects". ``size``: (of the scene's picture, of an object's), in pixels. After ``seconds`` no
-    further still is begun. Returns ``scene`` and ``objects``, with the names of the files, and ``notes``.
+    "all", "scene" or "objects". ``size``: (of the scene's picture, None: the scene's own; of an object's), in pixels.
+    After ``seconds`` no further still is begun. ``kept``: keys of stills that the caller still has. Returns ``scene``
+    and ``objects``, with the names of the files and the keys, and ``notes``; what is kept and unchanged has no file.
     """
     scene = bpy.context.scene
     frames = arguments["frames"] or [scene.frame_current]
     groups = {} if arguments["show"] == SCENE else _asked_groups(scene, arguments)
-    sheet = _Sheet(arguments, report, len(frames) + len(groups))
+    sheet = _Sheet(arguments, report, 0 if arguments["show"] == OBJECTS else len(frames))
     for frame in frames[: 1 if arguments["show"] == OBJECTS else None]:
         sheet.take(scene, frame, groups if frame == frames[0] else {})
     return {
@@ -53,6 +59,8 @@ class _Sheet:
         self._arguments, self._report, self._total = arguments, report, total
         self._ends = time.monotonic() + arguments["seconds"]
         self._files = self._done = 0
+        self._took = []  # seconds of each still that was rendered
+        self._digest = None  # of the scene at its frame
         self.scene, self.objects, self.notes = [], [], []
 
     def take(self, scene, frame, groups):
@@ -61,7 +69,9 @@ class _Sheet:
             self.notes.append(f"Not shown, for want of time: frame {frame}.")
             return
         width, side = self._arguments["size"]
+        width = width or min(_WIDEST, _width_of(scene.render))
         with at_frame(scene, frame, self.notes), LitStudio(scene.frame_current) as studio:
+            self._digest = lasting_digest(scene)
             subject = copy_of(studio, SCENE, scene.name, None, self.notes)
             camera = scene.camera
             renderer = PreviewRenderer(
@@ -76,27 +86,32 @@ class _Sheet:
             with renderer.cleaned_up():
                 # From outside, materials are seen best on the objects: these come first while there is time.
                 present = _present(groups, subject, self.notes)
+                alike = _alike(present, self._arguments["first"], as_given=bool(self._arguments["objects"]))
+                self._total += min(len(alike), _MOST_OBJECTS)
                 if camera is None:
-                    self._take_objects(renderer, present, side)
+                    self._take_objects(renderer, present, alike, side)
                 if self._arguments["show"] != OBJECTS:
-                    self._take_scene(scene, renderer, camera)
+                    self._take_scene(scene, renderer, camera, width)
                 if camera is not None:
-                    self._take_objects(renderer, present, side)
+                    self._take_objects(renderer, present, alike, side)
             self._files = renderer.files
             if frame == self.scene[0]["frame"] if self.scene else True:
                 note_missing(subject, self.notes)
 
-    def _take_scene(self, scene, renderer, camera):
+    def _take_scene(self, scene, renderer, camera, width):
         if self.objects and self._is_late:
             self.notes.append("The scene as a whole is not shown, for want of time.")
             return
         self._say(f"frame {scene.frame_current}")
-        views = list(renderer.camera_view(camera, scene.render, self.notes)) if camera else []
-        views = views or list(renderer.fixed_views(lambda *_: None, 1, views=(_THREE_QUARTER,)))
-        self.scene += [{**view, "frame": scene.frame_current} for view in views]
 
-    def _take_objects(self, renderer, groups, side):
-        alike = _alike(groups, self._arguments["first"], as_given=bool(self._arguments["objects"]))
+        def render():
+            views = list(renderer.camera_view(camera, scene.render, self.notes)) if camera else []
+            (view,) = views or renderer.fixed_views(lambda *_: None, 1, views=(_THREE_QUARTER,))
+            return {**view, "frame": scene.frame_current}
+
+        self.scene.append(self._still(("scene", width), render))
+
+    def _take_objects(self, renderer, groups, alike, side):
         many, late = [], []
         for name, others in alike.items():
             owners = groups[name]
@@ -107,12 +122,15 @@ class _Sheet:
                 late.append(name)
                 continue
             self._say(name)
-            file, scale = renderer.alone(owners, _THREE_QUARTER[1], side)
             self.objects.append(
                 {
+                    **self._still(
+                        (sorted(owners), side),
+                        lambda owners=owners: dict(
+                            zip(_ALONE, renderer.alone(owners, _THREE_QUARTER[1], side), strict=True)
+                        ),
+                    ),
                     "name": name,
-                    "file": file,
-                    "metres_per_pixel": scale,
                     "materials": _materials_of(owners)[:_LISTED],
                     "alike": others[:_LISTED],
                     "bare": sorted(owner for owner in owners if not _materials_of({owner}))[:_LISTED],
@@ -131,9 +149,34 @@ class _Sheet:
     def _is_late(self):
         return time.monotonic() > self._ends
 
+    def _still(self, shows, render):
+        """What ``render`` says of the picture that it makes; without its file, where the caller has it as it would be.
+
+        ``shows`` tells it from other pictures of the scene as it is.
+        """
+        key = self._digest and digest_of((self._digest, shows))
+        if key in self._arguments["kept"] and key in _made:
+            return {**_made[key], "file": None, "key": key}
+        began = time.monotonic()
+        said = render()
+        self._took.append(time.monotonic() - began)
+        if key is not None:
+            _made[key] = said
+            while len(_made) > _MOST_MADE:
+                del _made[next(iter(_made))]
+        return {**said, "key": key}
+
     def _say(self, what):
+        if self._took:
+            left = (self._total - self._done) * sum(self._took) / len(self._took)
+            what = f"{what}, about {left:.0f} s to go"
         self._report(self._done, self._total, what)
         self._done += 1
+
+
+def _width_of(render):
+    """The width of the scene's pictures in pixels, as far as previews go."""
+    return max(_NARROWEST, render.resolution_x * render.resolution_percentage // 100)
 
 
 def _asked_groups(scene, arguments):
@@ -159,23 +202,11 @@ def _asked_groups(scene, arguments):
 
 
 def _groups(scene, names):
-    """{title: names of Blender's objects}: of the protocol's objects, or of those with these names. Raises Refused."""
-    tagged = {one.name: {obj.name for obj in one.all_objects} for one in object_collections(scene)}
-    collections = {
-        one.name: {obj.name for obj in one.all_objects} for one in scene.collection.children_recursive
-    }
-    single = {obj.name: {obj.name} for obj in scene.objects}
-    if not names:
-        return tagged or single
-    known = single | collections | tagged
-    for name in names:
-        if name not in known:
-            near = nearest(name, list(known), 4)
-            raise Refused(
-                f"There is no object {name!r} in the scene {scene.name!r}."
-                + (f" Nearest: {quoted(near, 4)}." if near else "")
-            )
-    return {name: known[name] for name in names}
+    """{title: names of Blender's objects}: of these names, none: of all objects of the protocol, lacking those, of all
+    of Blender's. Raises Refused.
+    """
+    names = names or [one.name for one in object_collections(scene)] or scene.objects.keys()
+    return {name: {obj.name for obj in objects} for name, objects in objects_named(scene, names).items()}
 
 
 def _present(groups, subject, notes):

@@ -11,7 +11,8 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from ..blend.names import nearest, quoted
+from ..blend.named_objects import objects_named
+from ..blend.names import quoted
 from .fixed_views import SCENE, PreviewRenderer, copy_of
 from .framing import VIEWS
 from .material_colours import PreviewMaterial
@@ -87,16 +88,8 @@ class _CheckerStudio(StudioScene):
 
 def _meshes(scene, names, drawn):
     """(objects with a UV map, names of those without). Raises Refused for unknown names."""
-    known = {obj.name: [obj] for obj in scene.objects}
-    known |= {one.name: list(one.all_objects) for one in scene.collection.children_recursive}
-    for name in names:
-        if name not in known:
-            near = nearest(name, list(known), 4)
-            raise Refused(
-                f"There is no object {name!r} in the scene {scene.name!r}."
-                + (f" Nearest: {quoted(near, 4)}." if near else "")
-            )
-    chosen = [obj for name in names for obj in known[name]] if names else list(scene.objects)
+    named = objects_named(scene, names)
+    chosen = [obj for name in names for obj in named[name]] if names else list(scene.objects)
     meshes = [obj for obj in dict.fromkeys(chosen) if obj.type == "MESH" and obj.name in drawn]
     if not meshes:
         raise Refused("There is no mesh that renders show.")

@@ -2,7 +2,6 @@
 """Renders the view of the scene's camera, a frame for each call, and restores the scene's settings after it."""
 
 import contextlib
-import hashlib
 import os
 import re
 import sys
@@ -17,9 +16,9 @@ from ..blend.simulation_zones import objects_with_zones
 from ..blend.temporary import temporary_settings, without_render_result
 from ..physics import caches
 from ..state.fingerprint import fingerprint
+from ..state.still_digest import still_digest
 from .shot_settings import settings_for, shot_of
 
-_SOLID = frozenset({caches.RIGID_BODY, caches.CLOTH, caches.SOFT_BODY})  # at rest at their first frame
 _STILL_FRAME = 1  # the frame at which scenes are compared
 _BACK_SECONDS = 20.0  # for stepping back to the frame before
 _DENOISER = "Build without OpenImageDenoiser"  # as Cycles says it
@@ -32,8 +31,8 @@ def plan(arguments, report):
 
     Returns ``shot`` (see shot_of), ``scene`` (see fingerprint), ``unbaked`` (caches.unbaked and simulation zones),
     ``notes``, and the timeline: ``current``, ``subframe``, ``frame_start``, ``frame_end``, ``fps``, ``fps_base``; with
-    ``keep`` also ``looks`` (see _looks) of a still at ``frame`` (None: the current one). If a simulation is not baked,
-    it is made to start again, and the scene stays at frame 1.
+    ``keep`` also ``looks`` (see still_digest) of a still at ``frame`` (None: the current one). If a simulation is not
+    baked, it is made to start again, and the scene stays at frame 1.
     """
     del report
     scene = bpy.context.scene
@@ -45,7 +44,7 @@ def plan(arguments, report):
         scene.frame_set(_STILL_FRAME)
         digests = fingerprint(scene)
         frame = current if arguments["frame"] is None else arguments["frame"]
-        looks = _looks(scene, frame, digests) if arguments["keep"] else ""
+        looks = still_digest(scene, frame, digests) if arguments["keep"] else ""
     if unbaked:
         caches.restart_unbaked(scene)
     else:
@@ -64,17 +63,6 @@ def plan(arguments, report):
         "fps": render.fps,
         "fps_base": render.fps_base,
     }
-
-
-def _looks(scene, frame, digests):
-    """A digest of all that a still at a frame depends on: before a simulation begins, not on what it is like.
-
-    ``digests`` are those of the scene. Fluids, particles and paint are there from their first frame on.
-    """
-    at_rest = all(cache.kind in _SOLID and frame <= cache.range[0] for cache in caches.find_caches(scene))
-    if at_rest and not objects_with_zones(scene):
-        digests = fingerprint(scene, at_rest=True)
-    return hashlib.blake2b(repr(sorted(digests.items())).encode(), digest_size=16).hexdigest()
 
 
 def step(arguments, report):

@@ -147,6 +147,16 @@ def test_particles_are_not_baked_beyond_the_range(session: LiveSession, preview:
     assert session.run(read) == before
 
 
+def test_an_object_of_the_plan_is_baked_by_its_name(session: LiveSession) -> None:
+    session.run(
+        f"{PARTS}\ncloth('SailSheet')\ncloth('Flag', 3)\n"
+        "sail = bpy.data.collections.new('Sail'); sail['protocol_role'] = 'object'\n"
+        "scene.collection.children.link(sail); sail.objects.link(bpy.data.objects['SailSheet'])"
+    )
+    assert one(session.use(TOOL, objects=["Sail"]))["object"] == "SailSheet"
+    assert session.use(TOOL, objects=["Sail"], free=True).text == "Freed: cloth of 'SailSheet'."
+
+
 def test_only_what_is_asked_for_is_baked(session: LiveSession) -> None:
     session.run(f"{PARTS}\ncloth('Flag', 0)\ncloth('Sail', 3)\ntank()")
     found = session.use(TOOL, objects=["Sail"])
@@ -191,7 +201,11 @@ def test_a_longer_bake_of_a_fluid_does_not_go_on_where_the_last_one_ended(sessio
     ("code", "arguments", "words"),
     [
         ("pass", {}, "nothing to bake"),
-        ("cloth()", {"objects": ["Flagg"]}, r"no object 'Flagg' in the scene. Nearest: 'Flag'"),
+        (
+            "cloth()",
+            {"objects": ["Flagg"]},
+            r"no object or collection 'Flagg' in the scene 'Scene'. Nearest: 'Flag'",
+        ),
         ("cloth()\nplane('Shelf', 3)", {"objects": ["Shelf"]}, r"no simulation of its own.*Flag"),
         ("cloth()", {"frame_start": 9, "frame_end": 9}, "not a range"),
         ("cloth()", {"frame_start": 50}, "not a range"),

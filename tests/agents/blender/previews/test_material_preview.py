@@ -178,3 +178,39 @@ def test_of_an_edit_only_what_its_plan_names_or_what_is_new_is_shown_alone(sessi
     assert alone(["Checks"]) == ["The Chest 0"], "its material is named"
     assert alone(["World"]) == []
     assert alone([], everything[:-1]) == ["The Shell"], "it is new"
+
+
+def test_what_is_unchanged_is_not_rendered_again(session: LiveSession) -> None:
+    build(session, CLOSED_ROOM.replace("(.8, 0, 0, 1)", "(.7, 0, 0, 1)"))  # no other test has shown it
+    whole = session.use(material_preview.TOOL, width=64)
+    assert (whole.data["rendered"], whole.data["kept"]) == (4, 0)
+    some = session.use(
+        material_preview.TOOL, width=64, first=["The Shell"], objects=["The Shell", "The Chest 2"]
+    )
+    assert (some.data["rendered"], some.data["kept"]) == (0, 3), "asked otherwise, it shows the same"
+    assert "Shown as before, since nothing has changed: 3 stills." in some.text
+    assert pictures(some)[0].tobytes() == pictures(whole)[0].tobytes()
+    larger = session.use(material_preview.TOOL, width=96, show="scene")
+    assert (larger.data["rendered"], larger.data["kept"]) == (1, 0)
+    session.run(
+        "bpy.data.materials['Checks'].node_tree.nodes['Checker Texture'].inputs['Scale'].default_value = 5"
+    )
+    changed = session.use(material_preview.TOOL, width=64, show="scene")
+    assert (changed.data["rendered"], changed.data["kept"]) == (1, 0)
+
+
+def test_what_an_unbaked_simulation_shows_is_rendered_each_time(session: LiveSession) -> None:
+    build(
+        session,
+        "drop = box('Drop', (0, 0, 2))\n"
+        "bpy.context.view_layer.objects.active = drop\n"
+        "bpy.ops.rigidbody.object_add()\n"
+        "for frame in range(1, 4):\n    bpy.context.scene.frame_set(frame)",
+    )
+    for _ in range(2):
+        assert session.use(material_preview.TOOL, width=64, show="scene").data["kept"] == 0
+    session.run("bpy.context.scene.frame_set(1)")
+    session.use(material_preview.TOOL, width=64, show="scene")
+    assert session.use(material_preview.TOOL, width=64, show="scene").data["kept"] == 1, (
+        "nothing has moved yet"
+    )

@@ -1,0 +1,38 @@
+"""What the planner took back of the plan: findings about it are told, and keep no stage open."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from agents.loop.task import Finding
+    from agents.plan.tactical import Withdrawal
+
+_TAKEN_BACK = "The planner took back what the plan says where these rules find it broken: {}."
+_NOT_TO_BE_MENDED = "It is measured all the same, and not to be mended."
+
+
+def as_soft(findings: Iterable[Finding], withdrawn: Sequence[Withdrawal]) -> tuple[list[Finding], str]:
+    """The findings, those about what was withdrawn as soft ones, and what models are told of these ("": none)."""
+    read: list[Finding] = []
+    gone: list[Finding] = []
+    for finding in findings:
+        is_gone = any(one.covers(finding) for one in withdrawn)
+        gone += [finding] if is_gone else []
+        read.append({**finding, "severity": "soft"} if is_gone else finding)
+    if not gone:
+        return read, ""
+    told = "; ".join(f"{one['rule']} {', '.join(one['objects'])}" for one in gone)
+    hard = sum(one["severity"] == "hard" for one in read)
+    left = f"{hard} hard beside {'it' if len(gone) == 1 else 'them'}" if hard else "no other is hard"
+    return read, f"Withdrawn by the planner, and not counted: {told} ({left})."
+
+
+def format_withdrawn(withdrawn: Sequence[Withdrawal], *, to_builder: bool = False) -> str:
+    """What was withdrawn, in words; "" for nothing. ``to_builder``: for whoever would mend it."""
+    if not withdrawn:
+        return ""
+    told = _TAKEN_BACK.format("; ".join(map(str, withdrawn)))
+    return f"{told} {_NOT_TO_BE_MENDED}" if to_builder else told
