@@ -439,10 +439,12 @@ def test_grease_pencil_of_before_is_no_data_of_objects_beside_the_newer_one(
 ) -> None:
     code = "import bpy\nbpy.data.objects.new('x', bpy.data.grease_pencils.new('x'))"
     assert not check("wrong-type", code)
-    is_class = rule_checker.api.is_class  # of Blender 4.3 to 4.5
-    monkeypatch.setattr(
-        rule_checker.api, "is_class", lambda path: path == "bpy.types.GreasePencilv3" or is_class(path)
-    )
+    is_class = rule_checker.api.is_class
+
+    def in_4_5(path: str) -> bool:
+        return path == "bpy.types.GreasePencilv3" or is_class(path)
+
+    monkeypatch.setattr(rule_checker.api, "is_class", in_4_5)
     (found,) = check("wrong-type", code)
     assert "`bpy.data.grease_pencils_v3` makes" in found.message
 
