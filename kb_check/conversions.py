@@ -55,6 +55,10 @@ _OBJECTS_DATA = f"{T}Object.data"
 _MADE_OF = f"{T}BlendDataObjects.new(object_data)"
 _DATA_OF_NEW = tuple(f"{T}{name}" for name in OBJECT_DATA.values())
 _DATA = (*_DATA_OF_NEW, f"{T}Image")  # an empty shows images
+_OLDER, _NEWER = (
+    f"{T}GreasePencil",
+    f"{T}GreasePencilv3",
+)  # where there is the newer one, objects have that only
 _NUMBERS = frozenset({"bool", "int", "float"})
 _TAKES = {
     "boolean": frozenset({"bool", "int"}), "int": frozenset({"int", "bool"}), "float": _NUMBERS,
@@ -137,14 +141,21 @@ def _pointer_misfit(script: Script, taker: Taker, kind: Type, given: str) -> Mis
         if not api.is_class(kind.cls):
             return None
         if classes := {_OBJECTS_DATA: _DATA, _MADE_OF: _DATA_OF_NEW}.get(taker.path):
-            is_data = any(is_related(script, kind.cls, cls) for cls in classes)
-            return None if is_data else Misfit("the data of an object", given)
+            return _data_misfit(script, taker, kind, classes)
         if is_related(script, kind.cls, taker.target):
             return None
     # A name may be a module's and the script's own where only a part of the script is seen.
     if isinstance(kind, Collection) or (isinstance(kind, Module) and taker.target == STRUCT):
         return None
     return Misfit(_takes(taker), given)
+
+
+def _data_misfit(script: Script, taker: Taker, kind: Instance, classes: tuple[str, ...]) -> Misfit | None:
+    """Why what takes an object's data, of some classes, surely refuses an instance."""
+    if taker.path == _MADE_OF and kind.cls == _OLDER and script.api.is_class(_NEWER):
+        return Misfit(f"an instance of `{_NEWER}`, which `bpy.data.grease_pencils_v3` makes", describe(kind))
+    is_data = any(is_related(script, kind.cls, cls) for cls in classes)
+    return None if is_data else Misfit("the data of an object", describe(kind))
 
 
 def _array_misfit(script: Script, taker: Taker, node: ast.expr, sizes: tuple[int, ...]) -> Misfit | None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import distinct_words
+from kb_build.index.analysis import distinct_words, stem, words
 from kb_build.symbols.api_names import OPERATORS, SIDES, STRUCT, TYPES
 from kb_build.symbols.paths import is_socket, last_name, plain_path
 from kb_check.likely_names import by_label
@@ -16,7 +16,7 @@ from kb_serve.recognise.names.enum_values import EnumValues
 from kb_serve.recognise.names.likely_keywords import likely_keywords
 from kb_serve.recognise.names.likely_values import likely_values
 from kb_serve.recognise.names.node_names import is_like_a_node, nodes_meant
-from kb_serve.recognise.names.operator_words import OperatorWords
+from kb_serve.recognise.names.operator_words import OperatorWords, same_operator_words
 from kb_serve.recognise.notes import Notes
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup, for_reading
@@ -33,6 +33,8 @@ _FEW_MEMBERS = 8
 _KEPT = 512  # names that a class lacks, as one is often used many times
 # Methods of all structures, which are plurals of what properties are called.
 _PLURALS = frozenset({"items", "keys", "values"})
+_COLLECTION = f"{TYPES}bpy_prop_collection"
+_TURNING_ON = frozenset({"use", "show", "is", "has"})  # what the names of switches begin with
 _PART = frozenset("([:")  # in the path of a parameter, a socket, an item
 
 
@@ -213,11 +215,21 @@ class KnownNames:
         similar = [found for found in found if found not in machinery or found in misspelt]
         operators = [] if misspelt else self._operators.having(owner, name)
         of_kinds = "" if similar or operators else self._of_kinds(owner, name)
+        if (
+            operators
+            and similar
+            and not any(same_operator_words(last_name(path), name) for path in operators)
+        ):
+            operators = [*(f"{owner}.{one}" for one in similar), *operators][:_MOST_NAMED]
         if operators:
             similar = [path.removeprefix(OPERATORS) for path in operators]
+        elif methods := [] if misspelt else by_first_word(name, machinery):
+            similar = [one for one, _ in nearest(name, methods, _MOST_NAMED)] or methods
         elif not (misspelt or of_kinds):
             labels = self._labels(owner) if owner.startswith(TYPES) else {}
             similar = _likely(name, self._meant(owner, name, assigned=assigned), similar, labels)
+        if switches := [one for one in _switches(name, names) if one not in similar]:
+            similar, misspelt = [*switches, *similar][:_MOST_NAMED], [*switches, *misspelt]
         span = "" if self._lookup.paths_below(owner, name) else self._notes.never(owner, name)
         message = f"`{owner}` has no `{name}` in Blender {self.version}{span}."
         return Lacking(
@@ -263,7 +275,11 @@ class KnownNames:
         }
 
     def _of_kinds(self, owner: str, name: str) -> str:
-        """What a name is a misspelling of that classes below a class have, as kinds of modifiers do."""
+        """What a name is a misspelling of that classes below a class have, as kinds of modifiers do. A collection is
+        of the one class that its property says.
+        """
+        if owner == _COLLECTION:
+            return ""
         having: dict[str, str] = {}
         for cls in self.reader.descendants(owner):
             for member in self.reader.members(cls.path):
@@ -315,6 +331,14 @@ def _likely(name: str, meant: list[str], similar: list[str], labels: dict[str, s
     exact, partly = by_label(name, labels)
     found = dict.fromkeys((*exact, *meant, *similar, *partly))
     return list(found)[:_MOST_NAMED] or by_first_word(name, labels)
+
+
+def _switches(name: str, names: Iterable[str]) -> list[str]:
+    """What turns on what a name says: ``use_denoising``, for ``denoise``."""
+    said = [stem(word) for word in words(name)]
+    return [
+        one for one in names if (spoken := words(one))[0] in _TURNING_ON and [*map(stem, spoken[1:])] == said
+    ]
 
 
 def _closest(names: list[str]) -> str:

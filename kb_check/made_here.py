@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import builtins
 import re
 import sys
 from bisect import bisect_right
@@ -155,6 +156,32 @@ def knows_all(script: Script) -> bool:
     imported = {alias.name for node in script.all(ast.Import) for alias in node.names}
     imported |= {f"{node.module}.{alias.name}" for node in script.all(ast.ImportFrom) for alias in node.names}
     return all(name.partition(".")[0] in _HARMLESS or _is_helper(name) for name in imported)
+
+
+def is_untouched(script: Script, node: ast.expr, place: ast.expr) -> bool:
+    """Whether nothing out of sight runs between the making of a new thing and a place further down in the same body.
+
+    ``node`` is the thing, or what belongs to it.
+    """
+    if not computing(script).isdisjoint(RUNNING | STORING):
+        return False
+    while isinstance(node, ast.Attribute):
+        node = node.value
+    made = once_bound(script, node)
+    if not isinstance(made, ast.Call) or not callee_path(script, made).endswith(".new"):
+        return False
+    found = [(body, at) for body in bodies(script) if (at := statement_of(body, made)) >= 0]
+    body, first = max(found, key=lambda row: _start(row[0][row[1]]), default=([], 0))
+    last = statement_of(body, place)
+    between = [part for statement in body[first : last + 1] for part in walk(statement)]
+    return first <= last and not any(_is_foreign(script, part) for part in between)
+
+
+def _is_foreign(script: Script, node: ast.AST) -> bool:
+    """Whether what a part of a script runs may stand elsewhere."""
+    if isinstance(node, ast.Call) and not callee_path(script, node):
+        return not isinstance(node.func, ast.Name) or not hasattr(builtins, node.func.id)
+    return isinstance(node, (ast.Import, ast.ImportFrom))
 
 
 def _is_helper(name: str) -> bool:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.api_names import ID
+from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.lines import shown_when
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from kb_build.flow.api import Api
     from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
@@ -32,10 +35,22 @@ def is_shown(socket: Symbol, settings: Mapping[str, str]) -> bool:
     return any(settings.get(name) in values.split("|") for name, _, values in modes)
 
 
-def is_internal(socket: Symbol, key: str = "") -> bool:
-    """Whether no setting of its node shows a socket, so that nothing but its index gives it: no ``key`` either."""
+def is_internal(api: Api, socket: Symbol, key: str = "") -> bool:
+    """Whether its node never shows a socket, so that nothing but its index gives it: no ``key`` either.
+
+    What a node shows of a data-block that it points to, as the passes of a scene, is not its own to decide.
+    """
     is_hidden = "hidden-by-default" in socket.flags and not shown_when(socket)
-    return is_hidden and not any(f'"{key or socket.label}"' in subscript for subscript in socket.subscripts)
+    is_given = any(f'"{key or socket.label}"' in subscript for subscript in socket.subscripts)
+    return is_hidden and not is_given and not _is_of_data(api, socket.owner)
+
+
+def _is_of_data(api: Api, node: str) -> bool:
+    """Whether a node points to a data-block."""
+    return any(
+        symbol.type == "pointer" and api.descends(f"{T}{symbol.target}", ID)
+        for symbol in api.own(node).values()
+    )
 
 
 def is_by_others(socket: Symbol) -> bool:

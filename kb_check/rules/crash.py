@@ -17,8 +17,8 @@ bmesh.ops.bmesh_to_mesh(bm)  # reported: bm.to_mesh(mesh)
 bpy.app.help_text()  # reported: where Blender is a module of Python
 ```
 
-Only None, and what crashes whatever is given, are errors; what crashes some Blenders, or on some things, is a warning:
-without a window, in a new file, where `get` finds nothing.
+Only None, what crashes whatever is given, and what the script made so itself (``read_factory_settings``) are errors;
+what crashes some Blenders, or on some things, is a warning: without a window, in a new file, where `get` finds nothing.
 Not reported: what a script asks for (`if ob:`), and calls without a window in scripts that register what people call.
 """
 
@@ -41,9 +41,11 @@ from kb_build.symbols.records import (
     UNSET_BY,
 )
 from kb_check.calls import CallSite, calls
+from kb_check.emptied import EMPTYING, is_emptied_before
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.given import Given, given_values
 from kb_check.made_here import bindings, called_operators, callee_path, is_named_before, knows_all, makers
+from kb_check.opening import OPENING
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
 
@@ -53,6 +55,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _ENTERING = frozenset({"bpy.ops.object.mode_set", "bpy.ops.sculpt.sculptmode_toggle"})
+_RESETTING = "bpy.ops.wm.read_factory_settings"
 _GETTING = "bpy.types.bpy_prop_collection.get"
 
 
@@ -165,9 +168,25 @@ def _unset(script: Script, call: CallSite) -> Iterator[Finding]:
             and not is_named_before(script, last_name(needed), call.node)
         ):
             yield Finding(
-                RULE.id, "warning", script.span(call.node),
+                RULE.id, "error" if _is_in_new_file(script, call) else "warning", script.span(call.node),
                 f"`{path}` crashes Blender while `{needed}` is None, as it is in a new file: set it before.", path,
             )  # fmt: skip
+
+
+def _is_in_new_file(script: Script, call: CallSite) -> bool:
+    """Whether a call surely stands behind what makes the file that of a new Blender, and reads no other one."""
+    readers = [node for node in script.all(ast.Call) if callee_path(script, node) in OPENING | EMPTYING]
+    are_resetting = all(
+        callee_path(script, node) == _RESETTING and all(one.arg == "use_empty" for one in node.keywords)
+        for node in readers
+    )
+    row = script.analysis.resolutions.get(call.node)
+    return (
+        are_resetting
+        and row is not None
+        and row.statement is not None
+        and is_emptied_before(script, row.statement)
+    )
 
 
 def _without_step(script: Script, call: CallSite) -> Iterator[Finding]:

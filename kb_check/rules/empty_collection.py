@@ -50,6 +50,7 @@ _TAKING = frozenset({"link", "new"})
 _ADDING = ("append", "new", "add", "link")
 # Collections that Blender fills as another one of the same thing is filled, with the stem of its name.
 _FILLED_BESIDE = {"particle_systems": {stem("modifiers")}}
+_TREE = f"{T}NodeTree"
 _WORD = re.compile(r"\w+")
 _SCENES = frozenset({f"{T}Context.collection", f"{T}Scene.collection"})
 
@@ -132,7 +133,7 @@ def _mentioned(script: Script) -> frozenset[str]:
     """The attributes that the script reads or sets, but for the collections whose elements it takes by a constant, and
     what is on the way to link an object: that fills other collections.
     """
-    left_out = {*_subscripts(script), *_linking(script)}
+    left_out = {*_subscripts(script), *_linking(script), *_given_trees(script)}
     elements = set(_subscripts(script).values())
     return frozenset(
         node.attr
@@ -146,6 +147,17 @@ def _is_of_data(script: Script, node: ast.Attribute) -> bool:
     row = script.analysis.resolutions.get(node)
     symbols = row.symbols if row else ()
     return bool(symbols) and all(path.startswith(f"{T}BlendData.") for path in symbols)
+
+
+@once_per_script
+def _given_trees(script: Script) -> frozenset[ast.Attribute]:
+    """The attributes that a tree of nodes is assigned to, as it is: ``scene.compositing_node_group = tree``."""
+    return frozenset(
+        target
+        for node in script.all(ast.Assign)
+        for target in node.targets
+        if isinstance(target, ast.Attribute) and script.api.descends(script.class_of(node.value), _TREE)
+    )
 
 
 @once_per_script
@@ -178,6 +190,8 @@ def _worked_on(script: Script) -> frozenset[str]:
                     found += [*node.args, *(keyword.value for keyword in node.keywords)]
             case ast.Call():
                 found += [*node.args, *(keyword.value for keyword in node.keywords)]
+            case ast.Assign(targets=[ast.Attribute() as target]) if target in _given_trees(script):
+                pass
             case (
                 ast.Assign(targets=[ast.Attribute() | ast.Subscript()], value=value)
                 | ast.Return(value=ast.expr() as value)

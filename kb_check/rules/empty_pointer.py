@@ -13,7 +13,8 @@ strip.channelbag(slot).fcurves  # reported: strip.channelbag(slot, ensure=True)
 ```
 
 Not reported: things that the script did not make itself; scripts that name what fills it, anywhere, that compute
-names or import modules which may change scenes; and what the script asks for (``if obj.rigid_body:``).
+names or run other modules' code, which may change scenes, behind where the thing is made; and what the script asks for
+(``if obj.rigid_body:``).
 """
 
 from __future__ import annotations
@@ -40,6 +41,7 @@ from kb_check.made_here import (
     has_new_data,
     has_plain_operators_only,
     is_new,
+    is_untouched,
     keywords_and_texts,
     knows_all,
     member_path,
@@ -94,7 +96,7 @@ def _check(script: Script) -> Iterator[Finding]:
         if pointer is None or ast.unparse(pointer) in reported:
             continue
         symbol = _empty(script, pointer)
-        if symbol is None:
+        if symbol is None or not (knows_all(script) or is_untouched(script, pointer.value, node)):
             continue
         if cls := _only_with(script, symbol, pointer.value):
             message = f"`{symbol.path}` is None: only an object whose data are of `{cls}` has it."
@@ -117,7 +119,7 @@ def _empty(script: Script, pointer: ast.Attribute) -> Symbol | None:
 def _only_with(script: Script, symbol: Symbol, node: ast.expr) -> str:
     """The class of data that an object must have for a pointer, where it surely has other data; or empty."""
     cls = _ONLY_WITH.get(symbol.path, "")
-    if not cls or not knows_all(script) or symbol.name in asked_names(script):
+    if not cls or symbol.name in asked_names(script):
         return ""
     kind = script.type_of(node)
     data = kind.trait("data") if isinstance(kind, Instance) and kind.sure else None
@@ -151,7 +153,7 @@ def _is_never_assigned(script: Script, path: str) -> bool:
     if symbol is None:
         return False
     is_assigned = "readonly" not in symbol.flags and script.api.descends(f"{T}{symbol.target}", ID)
-    if not is_assigned or not knows_all(script) or not has_plain_operators_only(script):
+    if not is_assigned or not has_plain_operators_only(script):
         return False
     if symbol.name in asked_names(script) or symbol.name in stored_names(script):
         return False
@@ -176,7 +178,7 @@ def _stays_empty(script: Script, symbol: Symbol, pointer: ast.Attribute, place: 
 def _first_filled(script: Script, path: str) -> float:
     """The stage at which the script may fill a pointer first: infinite for never, -1 where that is not known."""
     symbol = script.api.symbols.symbol(path)
-    if symbol is None or not knows_all(script) or symbol.name in asked_names(script):
+    if symbol is None or symbol.name in asked_names(script):
         return -1
     operators = called_operators(script)
     if (

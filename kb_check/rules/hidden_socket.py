@@ -74,7 +74,7 @@ def _never_shown(script: Script) -> Iterator[Finding]:
             certain
             and row.value not in _asked(script)
             and all(
-                row.value in {*one.socket_names, one.identifier} and is_internal(one, row.value)
+                row.value in {*one.socket_names, one.identifier} and is_internal(script.api, one, row.value)
                 for one in sockets
             )
         ):

@@ -94,8 +94,8 @@ def _check(script: Script) -> Iterator[Finding]:
                 if why and before is not call and follows(script, before.node, call.node, owner):
                     yield _finding(script, call, refusal, why)
             elif refusal.given:
-                if not call.given & set(refusal.given):
-                    names = " and ".join(f"`{name}`" for name in refusal.given)
+                if lacking := [name for name in refusal.given if name not in call.given]:
+                    names = " and ".join(f"`{name}`" for name in lacking)
                     yield _finding(script, call, refusal, f"without {names}")
             elif refusal.by:
                 if kind := _refusing(script, owner, refusal):

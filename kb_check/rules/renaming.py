@@ -20,6 +20,7 @@ from kb_check.given import assigned, property_taker
 from kb_check.literals import written
 from kb_check.made_here import bindings
 from kb_check.script import once_per_script
+from kb_check.uses import are_refused
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -180,10 +181,14 @@ def _iterated(script: Script) -> dict[str, list[ast.expr]]:
 
 
 def _is_refused(script: Script, row: Resolution, replacement: str) -> bool:
-    """Whether the right name surely does not take the value that is assigned: ``use_alpha = True`` is no alpha_mode."""
+    """Whether the right name surely does not take what the script does with it: ``use_alpha = True`` is no alpha_mode,
+    and what is called is a function.
+    """
     value = _assigned(row)
     symbol = script.api.symbols.symbol(replacement)
     if row.kind == "store" and symbol is not None and "readonly" in symbol.flags:
+        return True
+    if symbol is not None and isinstance(row.node, ast.Attribute) and are_refused(script, row.node, symbol):
         return True
     if value is None or symbol is None or symbol.kind != "property":
         return False

@@ -63,7 +63,7 @@ def _check(script: Script) -> Iterator[Finding]:
             continue
         node = row.missing[0]
         sockets = (socket for side in _sides(row) for socket in script.api.sockets(node, side))
-        names = [_asked_by(socket) for socket in sockets if not is_internal(socket)]
+        names = [_asked_by(socket) for socket in sockets if not is_internal(script.api, socket)]
         yield lacking_finding(
             script, RULE.id, row, script.names.socket(node, row.value, dict.fromkeys(names))
         )
@@ -92,7 +92,7 @@ def _check(script: Script) -> Iterator[Finding]:
 def _misspelt(script: Script, node: ast.Subscript, cls: str, key: str) -> Finding | None:
     """A key that is nearly that of a socket which a node has anyway; None for others."""
     side = node.value.attr if isinstance(node.value, ast.Attribute) else ""
-    sockets = (socket for socket in script.api.sockets(cls, side) if not is_internal(socket))
+    sockets = (socket for socket in script.api.sockets(cls, side) if not is_internal(script.api, socket))
     names = [_asked_by(socket) for socket in sockets if WHEN_PAIRED not in socket.flags]
     lacking = script.names.socket(cls, key, dict.fromkeys(names))
     row = Resolution(node, "item", missing=(cls,), value=key)

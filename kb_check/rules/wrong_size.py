@@ -1,4 +1,4 @@
-"""Vectors and matrices whose sizes do not fit, or that lack what is read from them.
+"""Vectors, matrices and buffers whose sizes do not fit, or that lack what is read from them.
 
 ```python
 rotation.to_matrix() @ Matrix.Translation(offset)  # reported: 3 × 3 and 4 × 4
@@ -7,6 +7,7 @@ uv.co - vertex.co  # reported: 2 and 3 components
 Vector((1, 2, 3)).w  # reported
 x, y = ob.location  # reported: 3 components
 Matrix.Identity(5)  # reported: 2 to 4
+mesh.vertices.foreach_get("co", np.zeros(len(mesh.vertices)))  # reported: 3 numbers for each
 ```
 
 Not reported: sizes that are not written in the script or told by the API, scripts that resize any, and what stands in a
@@ -19,6 +20,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_check.buffers import short_buffer
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.literals import number
 from kb_check.made_here import callee_path
@@ -55,7 +57,7 @@ def _check(script: Script) -> Iterator[Finding]:
             case ast.Attribute():
                 told = _member(script, node)
             case ast.Call():
-                told = _call(script, node)
+                told = _call(script, node) or _buffer(script, node)
             case ast.Subscript():
                 told = _item(script, node)
             case ast.Assign(targets=[ast.Tuple(elts=names) | ast.List(elts=names)]):
@@ -137,6 +139,14 @@ def _call(script: Script, call: ast.Call) -> Finding | None:
     return None
 
 
+def _buffer(script: Script, call: ast.Call) -> Finding | None:
+    if (short := short_buffer(script, call)) is None:
+        return None
+    rows = ", of which the rows count: `.ravel()` makes one row" if short.has_rows else ""
+    told = f"`{short.path}` has {short.wanted} numbers for each, and this buffer has room for {short.given}{rows}."
+    return _finding(script, call.args[1], told, short.path)
+
+
 def _made(script: Script, node: ast.expr, path: str) -> Finding | None:
     count = number(script, node)
     if not isinstance(count, int) or count in _SIZES:
@@ -173,4 +183,4 @@ def _finding(
     return Finding(RULE.id, "error", script.span(node), told, path or VECTOR, (), fix)
 
 
-RULE = Rule("wrong-size", "error", "Vectors and matrices whose sizes do not fit", _check)
+RULE = Rule("wrong-size", "error", "Vectors, matrices and buffers whose sizes do not fit", _check)

@@ -11,6 +11,7 @@ scene.camera = bpy.data.cameras.new("Camera")  # reported: an Object that has it
 scene.render.filepath = pathlib.Path("/tmp/x.png")  # reported: str(…)
 bm.from_mesh(ob)  # reported: ob.data
 bmesh.ops.translate(bm, vec=(0, 0, 1), verts=faces)  # reported: vertices
+variable.targets[0].id = scene  # reported: variable.targets[0].id_type = "SCENE" comes first
 loop[uv_layer] = (0, 0)  # reported: loop[uv_layer].uv = (0, 0)
 mix = tree.nodes.new("ShaderNodeMix")
 mix.inputs["A"].default_value = (1, 0, 0, 1)  # reported: mix.data_type = "RGBA" comes first
@@ -37,13 +38,15 @@ from kb_build.flow.types import Collection, Instance, Plain
 from kb_build.symbols.api_names import GROUPS, ID, NODE, OBJECT, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.object_data import OBJECT_DATA
+from kb_build.symbols.paths import last_name
 from kb_check.annotated_parameters import ONE_IS_WRONG, is_annotated
 from kb_check.calls import nothing_from, other_way
 from kb_check.conversions import misfit
 from kb_check.documented import layer_misfit
 from kb_check.findings import Edit, Finding, Fix, Span
-from kb_check.given import class_values, given_values
+from kb_check.given import assigned, class_values, given_values
 from kb_check.literals import items, set_of
+from kb_check.made_here import is_new, knows_all, named_words, once_bound
 from kb_check.misfits import describe
 from kb_check.own_properties import given_to_own
 from kb_check.python_paths import is_path
@@ -65,6 +68,7 @@ _HELD = {
     "bmesh.types.BMLoopUV": "loop[layer].uv = (u, v)", "bmesh.types.BMDeformVert": "vert[layer][group_index] = weight",
 }  # fmt: skip
 _LONGEST_INT = 2**31
+_TARGET_ID = f"{T}DriverTarget.id"
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -94,6 +98,7 @@ def _check(script: Script) -> Iterator[Finding]:
             taker.path, (), _fix(script, taker, wrong, given.node) if len(given.takers) == 1 else None,
         )  # fmt: skip
     yield from _items_given(script)
+    yield from _other_ids(script)
 
 
 def _nothing_given(script: Script, given: Given, function: str) -> Iterator[Finding]:
@@ -208,6 +213,38 @@ def _color_fix(script: Script, taker: Taker, wrong: Misfit, parts: list[ast.expr
 def _is_number(script: Script, node: ast.expr) -> bool:
     kind = script.type_of(node)
     return isinstance(kind, Plain) and kind.kind in {"int", "float"}
+
+
+def _other_ids(script: Script) -> Iterator[Finding]:
+    """What is no object, given to the target of a new driver's variable, whose ``id_type`` nothing sets."""
+    if "id_type" in named_words(script) or not knows_all(script):
+        return
+    for row in script.resolutions("store"):
+        if row.symbols != (_TARGET_ID,) or not row.sure or not isinstance(row.node, ast.Attribute):
+            continue
+        value = assigned(row.statement, row.node)
+        cls = script.class_of(value) if value else ""
+        match once_bound(script, row.node.value):
+            case ast.Subscript(value=ast.Attribute(value=variable)) if is_new(script, variable):
+                is_other = script.api.descends(cls, ID) and cls not in {ID, OBJECT}
+            case _:
+                continue
+        if is_other and value and not is_tried(script, row.node):
+            choice = _id_type(script, cls)
+            first = f": `id_type = {choice!r}` comes first" if choice else ""
+            yield Finding(
+                RULE.id, "error", script.span(value),
+                f"`{_TARGET_ID}` takes an instance of `{OBJECT}` while `id_type` is 'OBJECT', as it is on what is new,"
+                f" not one of `{cls}`{first}.", _TARGET_ID,
+            )  # fmt: skip
+
+
+def _id_type(script: Script, cls: str) -> str:
+    """The value of ``id_type`` for a class of data-blocks, which its label is called as; empty where there is none."""
+    setting = script.api.symbols.symbol(f"{_TARGET_ID}_type")
+    names = {last_name(path) for path in script.api.lineage(cls)}
+    items_of = setting.enum_items if setting else ()
+    return next((item.identifier for item in items_of if item.name.replace(" ", "") in names), "")
 
 
 RULE = Rule("wrong-type", "error", "A value of a type that is not taken", _check)

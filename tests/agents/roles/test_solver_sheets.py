@@ -361,7 +361,6 @@ def test_smoke_rises_from_its_source_below_the_lid(blender: LiveSession) -> None
     assert tops[0] + 0.1 < tops[-1] <= 1
 
 
-<<<<<<< HEAD
 def test_a_gas_has_no_walls_as_its_sheet_says(blender: LiveSession) -> None:
     assert "The lid and the sides are open" in sheet("gas")
     borders = """
@@ -369,7 +368,8 @@ settings = gas(box("Domain", (1, 1, 1), (0, 0, 0)), ball("Source", 0.1, (0, 0, 0
 [name for name in dir(settings) if name.startswith("use_collision_border_") and getattr(settings, name)]
 """
     assert tried(blender, "gas", borders) == []
-=======
+
+
 def test_a_flag_flies_in_gusts_and_hangs_between_them(blender: LiveSession) -> None:
     seen = blender.run(f"{HELPERS}\n{recipe('cloth')}\n{recipe('wind')}\n{WIND}")
     reach, across, past = zip(*seen, strict=True)
@@ -378,7 +378,6 @@ def test_a_flag_flies_in_gusts_and_hangs_between_them(blender: LiveSession) -> N
     assert max(reach[54:60]) < 0.5, "it hangs in the lull"
     assert max(reach[80:]) > 0.6, "the next gust raises it"
     assert max(past) == pytest.approx(3, abs=0.01), "what has no weight for wind falls straight down"
->>>>>>> e14da330d55fdec8c354d9e0a55ff61bece01914
 
 
 def test_particles_come_to_rest_on_a_floor_and_stay(blender: LiveSession) -> None:

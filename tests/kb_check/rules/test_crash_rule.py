@@ -132,6 +132,27 @@ def test_what_crashes_is_said_of_the_symbol_and_found_in_scripts(
     assert not check("crash", f"{_START}{there}\n{instead}")
 
 
+@pytest.mark.parametrize(
+    ("before", "severity"),
+    [
+        ("", "warning"),
+        ("bpy.ops.wm.read_factory_settings()\n", "error"),
+        ("bpy.ops.wm.read_factory_settings(use_empty=True)\n", "error"),
+        ("bpy.ops.wm.read_factory_settings(app_template='Video_Editing')\n", "warning"),
+        ("bpy.ops.wm.read_factory_settings()\nbpy.ops.wm.open_mainfile(filepath='/x.blend')\n", "warning"),
+    ],
+)
+def test_what_a_script_makes_the_file_of_a_new_blender_surely_crashes(
+    check: Check, before: str, severity: str
+) -> None:
+    code = f"import bpy\n{before}scene = bpy.context.scene\n{_STRIP}\nstrip.modifiers.new('m', 'CURVES')"
+    (found,) = check("crash", code)
+    assert found.severity == severity
+    if severity == "error":
+        assert _ends(code)
+    assert not check("crash", code.replace("strip.modifiers", f"{_SET}\nstrip.modifiers"))
+
+
 _ASKED = "import bpy, bmesh\nbm = bmesh.new()\nvert = bm.verts.new()\nmesh = bpy.data.meshes.new('m')\n"
 
 

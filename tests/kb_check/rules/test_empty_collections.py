@@ -27,6 +27,8 @@ camera = bpy.data.cameras.new('c')
 material = bpy.data.materials.new('m')
 world = bpy.data.worlds.new('w')
 lattice = bpy.data.lattices.new('l')
+compositor = bpy.data.node_groups.new('c', 'CompositorNodeTree')
+scene.compositing_node_group = compositor
 bpy.context.scene.collection.objects.link(ob)
 ob.select_set(True)
 """
@@ -47,6 +49,7 @@ mesh.color_attributes[0].name = 'y'
 curve.splines[0].use_cyclic_u = True
 tree.nodes['Group Input'].location = (0, 0)
 tree.links[0].is_valid
+compositor.nodes['Composite'].location = (0, 0)
 tree.interface.items_tree['Geometry'].name = 'x'
 action.slots[0].name_display
 action.layers[0].strips
@@ -78,7 +81,7 @@ def test_elements_that_new_things_do_not_have_are_found(rule_checker: Checker, t
     outcomes = run_statements(tmp_path, [*_MADE.splitlines(), *lines])[-len(lines) :]
     refused = [line for line, (error, *_) in zip(lines, outcomes, strict=True) if error]
     assert [line for line in lines if found(rule_checker, line)] == refused
-    assert len(refused) == 27
+    assert len(refused) == 28
 
 
 @pytest.mark.parametrize(

@@ -70,6 +70,10 @@ def test_a_property_that_became_a_socket_is_told_but_not_renamed(checker: Checke
         ("bpy.context.object.modifiers['Mine'].segmants = 3", " Closest: `BevelModifier.segments`."),
         ("bpy.context.object.id_propertys_ensure()", " Closest: `id_properties_ensure`."),
         ("bpy.context.object.locaton", " Closest: `location`."),
+        ("bpy.context.object.keyframe_add('location')", " Closest: `keyframe_insert`, `keyframe_delete`."),
+        ("bpy.context.scene.cycles.denoise = True", " Closest: `use_denoising`, `denoiser`."),
+        # Of classes below that of all collections it has nothing.
+        ("bpy.data.pointclouds.new('x').points.add(4)", " `values`, `get`, `find`."),
     ],
 )
 def test_what_may_be_meant_is_told(checker: Checker, code: str, told: str) -> None:
@@ -82,6 +86,7 @@ def test_what_may_be_meant_is_told(checker: Checker, code: str, told: str) -> No
     ("code", "meant", "not_meant"),
     [
         ("bpy.ops.wm.fbx_export(filepath='x')", "export_scene.fbx", "fbx_import"),
+        ("bpy.ops.object.deselect_all()", "object.select_all", ""),
         ("bpy.data.curves.new('x', 'FONT').text = 'x'", "body", ""),
         ("bpy.context.object.rigid_body.bounciness = 1", "restitution", ""),
         ("bpy.context.object.constraints.new('IK').chain_length = 2", "chain_count", ""),

@@ -55,6 +55,7 @@ _PARTS = (
     "bpy.utils.register_class(Part)\n"
     "bpy.types.Scene.parts = bpy.props.CollectionProperty(type=Part)\n"
 )
+_DRIVER = _OBJECT + "variable = ob.driver_add('location', 0).driver.variables.new()\n"
 WRONG = {
     "empty-pointer": [
         _FLUID + "fluid.domain_settings.domain_type = 'LIQUID'",
@@ -170,6 +171,8 @@ WRONG = {
         _MIX + "mix.inputs['B'].default_value = 0.5",
         "armature = bpy.data.armatures.new('x')\narmature.collections.new('x').assign('Bone')",
         "armature = bpy.data.armatures.new('x')\narmature.collections.new('x').assign([1])",
+        _DRIVER + "variable.targets[0].id = bpy.context.scene",
+        _DRIVER + "target = variable.targets[0]\ntarget.id = bpy.data.materials.new('x')",
     ],
     "missing-argument": [
         _CUBE + "bpy.context.object.data.color_attributes.new('x', 'FLOAT_COLOR')",
@@ -359,6 +362,8 @@ RIGHT = [
     _ACTION + "ob.animation_data.action_slot = action.slots.new('OBJECT', 'x')",
     _ARMATURE + "bpy.context.collection.objects.link(ob)\nbpy.context.view_layer.objects.active = ob\n"
     "bpy.ops.object.mode_set(mode='EDIT')\narmature.edit_bones.new('x')\nbpy.ops.object.mode_set(mode='OBJECT')",
+    _DRIVER + "variable.targets[0].id = ob",
+    _DRIVER + "target = variable.targets[0]\ntarget.id_type = 'SCENE'\ntarget.id = bpy.context.scene",
 ]
 
 
@@ -413,7 +418,7 @@ def test_an_input_by_its_name_changes_nothing(check: Check, tmp_path: Path) -> N
     assert [len(check("input-by-name", line)) for line in lines] == [1, 0, 0]
 
 
-@pytest.mark.parametrize("rule", ["empty-pointer", "hidden-socket", "not-in-edit-mode"])
+@pytest.mark.parametrize("rule", ["hidden-socket", "not-in-edit-mode"])
 @pytest.mark.parametrize(
     "elsewhere", ["import rigs\nrigs.prepare()", "from .rigs import prepare", "setattr(x, y, 1)"]
 )
@@ -427,3 +432,44 @@ def test_what_a_node_never_shows_is_found_whatever_is_done_elsewhere(check: Chec
     assert [
         len(check("hidden-socket", f"{before}\n{code}")) for before in ("", "import rigs\nrigs.prepare()")
     ] == [1, 1]
+
+
+def test_grease_pencil_of_before_is_no_data_of_objects_beside_the_newer_one(
+    rule_checker: Checker, check: Check, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    code = "import bpy\nbpy.data.objects.new('x', bpy.data.grease_pencils.new('x'))"
+    assert not check("wrong-type", code)
+    is_class = rule_checker.api.is_class
+
+    def in_4_5(path: str) -> bool:
+        return path == "bpy.types.GreasePencilv3" or is_class(path)
+
+    monkeypatch.setattr(rule_checker.api, "is_class", in_4_5)
+    (found,) = check("wrong-type", code)
+    assert "`bpy.data.grease_pencils_v3` makes" in found.message
+
+
+_MADE_BELOW = "scene = bpy.data.scenes.new('x')\n"
+_READ = "scene.compositing_node_group.nodes.new('NodeReroute')"
+
+
+@pytest.mark.parametrize(
+    ("before", "between", "count"),
+    [
+        ("import rigs", "", 1),
+        ("try:\n    import rigs\nexcept ImportError:\n    rigs = None\nrigs.prepare()", "", 1),
+        ("from .rigs import prepare\nprepare()", "scene.name = str(1)\nprint(scene.name)", 1),
+        ("import rigs", "rigs.prepare()", 0),
+        ("import rigs", "import others", 0),
+        ("import rigs", "rigs.prepare(scene)", 0),
+        ("import rigs\nsetattr(x, y, 1)", "", 0),
+    ],
+)
+def test_a_thing_that_is_made_below_what_others_do_is_new(
+    check: Check, before: str, between: str, count: int
+) -> None:
+    assert len(check("empty-pointer", f"import bpy\n{before}\n{_MADE_BELOW}{between}\n{_READ}")) == count
+
+
+def test_what_is_made_elsewhere_is_no_new_thing(check: Check) -> None:
+    assert not check("empty-pointer", f"import bpy\nimport rigs\nscene = rigs.scene()\n{_READ}")

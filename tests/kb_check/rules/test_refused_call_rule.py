@@ -21,6 +21,7 @@ second = strips.new_effect("Second", "COLOR", channel=2, frame_start=1, length=9
 strips.new_effect("Short", "TEXT", channel=3, frame_start=1)
 strips.new_effect(name="Cross", type="CROSS", channel=4, frame_start=1)
 strips.new_effect("Cross", "CROSS", channel=4, frame_start=1, input1=first, input2=second)
+strips.new_effect("Half", "CROSS", channel=4, frame_start=1, input1=first)
 strips.new_effect("Glow", "GLOW", channel=5, frame_start=1)
 strips.new_effect("Glow", "GLOW", channel=5, frame_start=1, input1=first)
 curve = bpy.data.curves.new("curve", "CURVE")

@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING
 import pytest
 from told_by_blender import told_by_blender
 
+from kb_build.symbols.records import Symbol
+from kb_check.socket_modes import is_internal
+
 if TYPE_CHECKING:
     from kb_check.checker import Checker
 
@@ -101,3 +104,16 @@ def test_keys_that_blender_takes_are_no_finding_and_those_that_it_refuses_are(
     assert refused > 45
     assert wrong == []
     assert missed == []
+
+
+@pytest.mark.parametrize(
+    ("node", "name", "internal"),
+    [("ShaderNodeBackground", "Weight", True), ("CompositorNodeRLayers", "Depth", False)],
+)
+def test_what_a_node_shows_of_a_scene_is_not_said_to_be_never_there(
+    rule_checker: Checker, node: str, name: str, internal: bool
+) -> None:
+    owner = f"bpy.types.{node}"
+    flags = (f"identifier:{name}", "hidden-by-default")
+    socket = Symbol(f'{owner}.outputs["{name}"]', "socket", owner, name, flags=flags)
+    assert is_internal(rule_checker.api, socket) is internal

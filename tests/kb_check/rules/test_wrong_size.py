@@ -92,3 +92,33 @@ def test_a_rotation_is_made_a_transformation(check: Check, tmp_path: Path) -> No
 )
 def test_what_is_not_sure_is_left_alone(check: Check, code: str) -> None:
     assert check("wrong-size", f"from mathutils import Matrix, Vector\n{code}\n") == []
+
+
+_BUFFERS = """\
+import bpy
+import numpy as np
+mesh = bpy.data.objects["Cube"].data
+count = len(mesh.vertices)
+short = np.zeros(count, np.float32)
+listed = [0.0] * count
+long = np.empty(3 * count)
+grown = [0.0] * count
+grown += [0.0] * 2 * count
+"""
+
+
+def test_buffers_are_told_that_blender_finds_too_short(check: Check, tmp_path: Path) -> None:
+    made = _BUFFERS.splitlines()
+    buffers = (
+        "short", "listed", "long", "grown", "np.zeros((count, 3))", "np.zeros((count, 3)).ravel()",
+        "np.ones(count * 2)", "[0.0] * 3 * len(mesh.vertices)", "np.full(shape=count * 3, fill_value=1)",
+    )  # fmt: skip
+    lines = [f"mesh.vertices.foreach_{way}('co', {buffer})" for way in ("get", "set") for buffer in buffers]
+    lines.append("mesh.vertices.foreach_get('select', [False] * count)")
+    answers = run_statements(tmp_path, [*made, *lines])[len(made) :]
+    refused = [line for line, (error, *_) in zip(lines, answers, strict=True) if error]
+    told = [
+        lines[found.span.line - len(made) - 1] for found in check("wrong-size", "\n".join([*made, *lines]))
+    ]
+    assert told == refused
+    assert 6 < len(refused) < len(lines)

@@ -1,0 +1,104 @@
+"""Buffers for ``foreach_get`` and ``foreach_set`` that surely are too short: all parts of all items go into one row.
+
+```python
+count = len(mesh.vertices)
+mesh.vertices.foreach_get("co", np.zeros(count))  # 3 numbers each
+mesh.vertices.foreach_get("co", np.zeros((count, 3)))  # only the rows count
+```
+"""
+
+from __future__ import annotations
+
+import ast
+from math import prod
+from typing import TYPE_CHECKING, NamedTuple
+
+from kb_build.flow.types import Collection, Instance
+from kb_check.literals import number, times_bound
+from kb_check.made_here import attributes, callee_path, once_bound
+
+if TYPE_CHECKING:
+    from kb_check.script import Script
+
+_FUNCTIONS = frozenset({"foreach_get", "foreach_set"})
+_MAKING = frozenset({"empty", "full", "ones", "zeros"})  # of numpy, by the shape that comes first
+_RESIZING = frozenset({"append", "extend", "insert", "resize", "shape"})
+
+
+class Short(NamedTuple):
+    """How many numbers an item has, how many there are in the buffer for each, and the path of the property."""
+
+    wanted: int
+    given: int
+    path: str
+    has_rows: bool
+
+
+def short_buffer(script: Script, call: ast.Call) -> Short | None:
+    """What is too short of the buffer that a call is given; None where it may be long enough."""
+    match call:
+        case ast.Call(
+            func=ast.Attribute(value=items, attr=name), args=[ast.Constant(value=str(attribute)), buffer]
+        ) if name in _FUNCTIONS and callee_path(script, call):
+            pass
+        case _:
+            return None
+    kind = script.type_of(items)
+    element = kind.element if isinstance(kind, Collection) else None
+    member = script.api.member(element.cls, attribute) if isinstance(element, Instance) else None
+    if member is None or not member.symbol.array or not all(member.symbol.array):
+        return None
+    wanted = prod(member.symbol.array)
+    if (found := _length(script, buffer)) is None:
+        return None
+    given = _times(script, found, ast.unparse(items))
+    if given is None or given >= wanted or not _stays(script, items, buffer):
+        return None
+    return Short(wanted, given, member.symbol.path, _shape(script, buffer) is not found)
+
+
+def _length(script: Script, buffer: ast.expr) -> ast.expr | None:
+    """The expression for the number of a buffer's items, or of its rows."""
+    shape = _shape(script, buffer)
+    return shape.elts[0] if isinstance(shape, ast.Tuple) and shape.elts else shape
+
+
+def _shape(script: Script, buffer: ast.expr) -> ast.expr | None:
+    match once_bound(script, buffer):
+        case ast.Call(func=ast.Attribute(value=ast.Name(id="np" | "numpy"), attr=name), args=[shape, *_]) if (
+            name in _MAKING
+        ):
+            return shape
+        case ast.BinOp(left=ast.List(elts=[_]), op=ast.Mult(), right=length):
+            return length
+        case _:
+            return None
+
+
+def _times(script: Script, length: ast.expr, items: str) -> int | None:
+    """How many times the length of a collection an expression is; None where that cannot be seen."""
+    match once_bound(script, length):
+        case ast.Call(func=ast.Name(id="len"), args=[collection]) if ast.unparse(collection) == items:
+            return 1
+        case ast.BinOp(left=left, op=ast.Mult(), right=right):
+            for one, other in ((left, right), (right, left)):
+                factor, times = number(script, one), _times(script, other, items)
+                if isinstance(factor, int) and times is not None:
+                    return factor * times
+            return None
+        case _:
+            return None
+
+
+def _stays(script: Script, items: ast.expr, buffer: ast.expr) -> bool:
+    """Whether the names in both stand for one thing each, and nothing makes the buffer longer."""
+    names = {node.id for part in (items, buffer) for node in ast.walk(part) if isinstance(node, ast.Name)}
+    is_resized = any(
+        isinstance(node.value, ast.Name) and node.value.id in names
+        for name in _RESIZING
+        for node in attributes(script).get(name, ())
+    )
+    is_extended = any(
+        isinstance(node.target, ast.Name) and node.target.id in names for node in script.all(ast.AugAssign)
+    )
+    return not is_resized and not is_extended and all(times_bound(script)[name] <= 1 for name in names)
