@@ -20,7 +20,7 @@ class BakeArguments(Arguments):
     objects: list[str] | None = Field(
         default=None,
         min_length=1,
-        description="Objects or collections. Default: every simulation. A rigid body: its whole world.",
+        description="Default: every simulation. A rigid body: its whole world.",
     )
     frame_start: int | None = Field(default=None, ge=0, le=_LAST_FRAME, description="Default: the scene's.")
     frame_end: int | None = Field(default=None, ge=1, le=_LAST_FRAME, description="Default: the scene's.")

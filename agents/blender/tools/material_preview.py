@@ -51,8 +51,8 @@ class MaterialArguments(Arguments):
         max_length=_MOST_FRAMES,
         description="Of the scene; objects: at the first.",
     )
-    width: int | None = Field(
-        default=None, ge=64, le=1536, description="Pixels. Default: the scene's own, at most 960."
+    width: int | SkipJsonSchema[None] = Field(
+        default=None, ge=64, le=1536, description="Default: the scene's, at most 960."
     )
     seconds: float = Field(
         default=150.0,
@@ -65,8 +65,8 @@ class MaterialArguments(Arguments):
 
 DESCRIPTION = """\
 See materials as they render (Cycles, the file's own shaders and textures) in neutral light: no lamp is needed. \
-Shows the scene through its camera, or in three-quarter view, and each object alone. A still of the scene takes up \
-to a minute, an object some seconds; what is unchanged is not rendered again, whoever asks."""
+Shows the scene through its camera, or in three-quarter view, and each object alone. A picture takes up to a minute, \
+but for unchanged ones."""
 
 
 def run(context: ToolContext, arguments: MaterialArguments, call: Call) -> Result:

@@ -31,7 +31,7 @@ class TrialArguments(Arguments):
         default=None,
         min_length=1,
         max_length=12,
-        description="Objects or collections. Default: all that are simulated.",
+        description="Default: all that are simulated.",
     )
     frames: int = Field(default=24, ge=2, le=1000, description="To step.")
     seconds: float = Field(default=60.0, ge=1, le=1800, description="Ends after this time.")

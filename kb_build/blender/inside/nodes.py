@@ -404,10 +404,8 @@ def write_all(write, structs, observer, former):
         nodes = make(trees, identifier)
         if not nodes and scene is not None:
             nodes = make({"CompositorNodeTree": scene.node_tree}, identifier)  # pyright: ignore[reportAttributeAccessIssue]
-        for node in nodes.values():
-            put(
-                node, "scene", scene or bpy.context.scene
-            )  # a new node has none, or one whose tree is another
+            for node in filter(passes.reads_passes, nodes.values()):
+                node.scene = scene  # not the file's, whose passes change nothing in this tree
         if not nodes:
             continue
         owner = f"bpy.types.{identifier}"

@@ -92,9 +92,9 @@ def on_preview(arguments):
 
 
 def on_material_sheet(arguments):
-    shown = {**view(arguments["folder"], 0, "three-quarter"), "frame": 1}
+    shown = {**view(arguments["folder"], 0, "three-quarter"), "frame": 1, "key": "0" * 32}
     alone = {"name": "Cube", "file": view(arguments["folder"], 1, "x")["file"], "metres_per_pixel": 0.1}
-    alone |= {"materials": ["Clay"], "alike": ["Box"], "bare": []}
+    alone |= {"key": None, "materials": ["Clay"], "alike": ["Box"], "bare": []}
     return {"title": "Scene", "scene": [shown], "objects": [alone], "notes": ["a note"]}
 
 
