@@ -51,9 +51,7 @@ class MaterialArguments(Arguments):
         max_length=_MOST_FRAMES,
         description="Of the scene; objects: at the first.",
     )
-    width: int | SkipJsonSchema[None] = Field(
-        default=None, ge=64, le=1536, description="Default: the scene's, at most 960."
-    )
+    width: int | SkipJsonSchema[None] = Field(default=None, ge=64, le=1536, description="Pixels.")
     seconds: float = Field(
         default=150.0,
         ge=1,
@@ -64,9 +62,9 @@ class MaterialArguments(Arguments):
 
 
 DESCRIPTION = """\
-See materials as they render (Cycles, the file's own shaders and textures) in neutral light: no lamp is needed. \
-Shows the scene through its camera, or in three-quarter view, and each object alone. A picture takes up to a minute, \
-but for unchanged ones."""
+See materials as they render (Cycles, the file's shaders and textures) in neutral light, without lamps. \
+Shows the scene through its camera, or in three-quarter view, and each object alone: up to a minute \
+a picture."""
 
 
 def run(context: ToolContext, arguments: MaterialArguments, call: Call) -> Result:
