@@ -49,21 +49,16 @@ def short_buffer(script: Script, call: ast.Call) -> Short | None:
     if member is None or not member.symbol.array or not all(member.symbol.array):
         return None
     wanted = prod(member.symbol.array)
-    if (found := _length(script, buffer)) is None:
-        return None
-    given = _times(script, found, ast.unparse(items))
+    shape = _shape(script, buffer)
+    length = shape.elts[0] if isinstance(shape, ast.Tuple) and shape.elts else shape
+    given = _times(script, length, ast.unparse(items)) if length else None
     if given is None or given >= wanted or not _stays(script, items, buffer):
         return None
-    return Short(wanted, given, member.symbol.path, _shape(script, buffer) is not found)
-
-
-def _length(script: Script, buffer: ast.expr) -> ast.expr | None:
-    """The expression for the number of a buffer's items, or of its rows."""
-    shape = _shape(script, buffer)
-    return shape.elts[0] if isinstance(shape, ast.Tuple) and shape.elts else shape
+    return Short(wanted, given, member.symbol.path, length is not shape)
 
 
 def _shape(script: Script, buffer: ast.expr) -> ast.expr | None:
+    """The expression for the number of a buffer's items, or for its rows and columns."""
     match once_bound(script, buffer):
         case ast.Call(func=ast.Attribute(value=ast.Name(id="np" | "numpy"), attr=name), args=[shape, *_]) if (
             name in _MAKING

@@ -55,10 +55,8 @@ _OBJECTS_DATA = f"{T}Object.data"
 _MADE_OF = f"{T}BlendDataObjects.new(object_data)"
 _DATA_OF_NEW = tuple(f"{T}{name}" for name in OBJECT_DATA.values())
 _DATA = (*_DATA_OF_NEW, f"{T}Image")  # an empty shows images
-_OLDER, _NEWER = (
-    f"{T}GreasePencil",
-    f"{T}GreasePencilv3",
-)  # where there is the newer one, objects have that only
+# Where there is the newer one, objects have that only.
+_OLDER, _NEWER = f"{T}GreasePencil", f"{T}GreasePencilv3"
 _NUMBERS = frozenset({"bool", "int", "float"})
 _TAKES = {
     "boolean": frozenset({"bool", "int"}), "int": frozenset({"int", "bool"}), "float": _NUMBERS,

@@ -17,7 +17,7 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls import callee_of
 from kb_check.conversions import misfit
 from kb_check.given import parameter_taker
-from kb_check.made_here import bindings
+from kb_check.made_here import bindings, members_taken
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
@@ -58,7 +58,8 @@ def _refuses_call(script: Script, symbol: Symbol, call: ast.Call) -> bool:
 
 def _read(script: Script, node: ast.Attribute) -> Iterator[str]:
     """The attributes that are read from a member, or from the one name that holds it."""
-    yield from (each.attr for each in script.all(ast.Attribute) if each.value is node)
+    if name := members_taken(script).get(node):
+        yield name
     holding = {name for name, values in bindings(script).items() if values == [node]}
     for name in holding:
         yield from _read_from_names(script).get(name, ())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import os
 import sys
 from contextlib import suppress
@@ -12,13 +11,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from simworlds.errors import NO_ROOM
 from simworlds.terminal.streams import discard_output, guard_streams
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
 _FAILED, _INTERRUPTED = 2, 130
-_NO_ROOM = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 # Numpy starts a thread for each core to multiply matrices with; that takes longer than the rest of loading it.
 _MATRIX_THREADS = "OPENBLAS_NUM_THREADS"
 _MULTIPLYING = frozenset({"bench"})  # commands that multiply large ones
@@ -78,7 +77,7 @@ class _Lazy(click.Group):
                 with suppress(BrokenPipeError):
                     sys.stdout.flush()  # what print has kept until now
         except OSError as error:
-            if error.errno not in _NO_ROOM:
+            if error.errno not in NO_ROOM:
                 raise
             with suppress(OSError):
                 click.echo(

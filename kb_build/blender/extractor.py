@@ -17,6 +17,7 @@ from kb_build.digests import Digests
 from kb_build.errors import ExtractError
 from kb_build.fingerprint import extractor_digest, runtime_digest
 from kb_build.versions.history import ApiHistory
+from simworlds.errors import NO_ROOM
 from simworlds.files import remove_unfinished_files, staged_file
 from simworlds.releases import minor_of
 from simworlds.sandbox.errors import ProgramFailed
@@ -69,8 +70,7 @@ def extract_api(runtime: Runtime, *, home: Path, again: bool = False, progress: 
 
 
 def _remedy(error: OSError) -> str:
-    is_full = error.errno in {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
-    return "Make room there" if is_full else "Make the folder writable"
+    return "Make room there" if error.errno in NO_ROOM else "Make the folder writable"
 
 
 def _has_moved(extract: Path) -> bool:

@@ -8,7 +8,6 @@ the folder condemns the whole archive.
 from __future__ import annotations
 
 import bz2
-import errno
 import gzip
 import io
 import lzma
@@ -23,6 +22,7 @@ from pathlib import Path, PurePosixPath
 from typing import IO
 
 from kb_build.errors import SourceError
+from simworlds.errors import NO_ROOM
 from simworlds.files import staged_folder
 
 Progress = Callable[[str, int, int | None], None]
@@ -251,7 +251,7 @@ def _brief(error: BaseException) -> str:
 
 
 def _disk_error(error: OSError, archive: Path, target: Path) -> SourceError:
-    if error.errno in {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}:
+    if error.errno in NO_ROOM:
         return SourceError(
             f"the disk is full: {archive} cannot be unpacked into {target.parent} ({error.strerror}); "
             "make room, or move the cache with SIMWORLDS_HOME"

@@ -52,6 +52,7 @@ from kb_check.own_properties import given_to_own
 from kb_check.python_paths import is_path
 from kb_check.rule import Rule
 from kb_check.tried import is_tried
+from kb_serve.recognise.names.likely_values import item_called
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -230,21 +231,14 @@ def _other_ids(script: Script) -> Iterator[Finding]:
             case _:
                 continue
         if is_other and value and not is_tried(script, row.node):
-            choice = _id_type(script, cls)
+            kinds = script.api.symbols.symbol(f"{_TARGET_ID}_type")
+            choice = item_called(kinds, map(last_name, script.api.lineage(cls)))
             first = f": `id_type = {choice!r}` comes first" if choice else ""
             yield Finding(
                 RULE.id, "error", script.span(value),
                 f"`{_TARGET_ID}` takes an instance of `{OBJECT}` while `id_type` is 'OBJECT', as it is on what is new,"
                 f" not one of `{cls}`{first}.", _TARGET_ID,
             )  # fmt: skip
-
-
-def _id_type(script: Script, cls: str) -> str:
-    """The value of ``id_type`` for a class of data-blocks, which its label is called as; empty where there is none."""
-    setting = script.api.symbols.symbol(f"{_TARGET_ID}_type")
-    names = {last_name(path) for path in script.api.lineage(cls)}
-    items_of = setting.enum_items if setting else ()
-    return next((item.identifier for item in items_of if item.name.replace(" ", "") in names), "")
 
 
 RULE = Rule("wrong-type", "error", "A value of a type that is not taken", _check)

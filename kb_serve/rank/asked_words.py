@@ -7,6 +7,8 @@ CODE_WORDS = frozenset(
     """addon api bpy callback code function headless loop method module numpy programmatically python script scripts
     variable""".split()  # noqa: SIM905
 )
+# … and that writes a script.
+SCRIPT_WORDS = frozenset({"bpy", "programmatically", "python", "script", "scripts"})
 # There are so many nodes that one has something of everything; who wants one mostly says so.
 NODE_WORDS = frozenset(
     "compositing compositor geometry node nodes nodetree shader shaders socket sockets".split()  # noqa: SIM905

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import STOP_WORDS, words
+from kb_serve.rank.asked_words import SCRIPT_WORDS
 from kb_serve.rank.deprecated import replacement
 from kb_serve.rank.meant_members import MeantMembers, meant_members
 from kb_serve.rank.named_nodes import named_nodes
@@ -36,7 +37,6 @@ _FAR = 0.5  # share of the best hit's score below which another one is far from 
 _ALWAYS = 5  # hits for a description that are listed however far they are
 _NAMES = 4  # so many of those listed are symbols, if the search finds some that are not
 _TOO_FAR = 0.25  # share of the best hit's score below which a symbol does not help either
-SCRIPT_WORDS = frozenset({"bpy", "programmatically", "python", "script", "scripts"})  # of who writes a script
 _HARDLY_WORSE = 0.85  # share of the best page's score from which on a name comes before it
 _NEAR = 8  # of the best ids
 _LEAST_BESIDE = 3  # words beside code that are a question of their own

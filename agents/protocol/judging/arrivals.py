@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from agents.protocol.judging.measured_motion import mesh_names
-from agents.protocol.judging.phases import phases_of
+from agents.protocol.judging.phases import cause_of, phases_of
 from agents.protocol.judging.sizes import contact_gap
 from agents.protocol.measures.motion import ContactFramesRequest
 from agents.protocol.measures.requests import Unmeasured
@@ -22,11 +22,6 @@ def meeting(context: RuleContext, effect: MotionPhase, cause: MotionPhase) -> Co
     if effect.actor == cause.actor or not a or not b:
         return None
     return ContactFramesRequest(a, b, cause.start, effect.end, contact_gap(context, a, b), once=True)
-
-
-def cause_of(context: RuleContext, phase: MotionPhase) -> MotionPhase | None:
-    """The phase that causes another one; None if the plan has none."""
-    return next((other for other in context.planned.motion.phases if other.name == phase.cause), None)
 
 
 def caused_after(context: RuleContext, phase: MotionPhase) -> MotionPhase | None:

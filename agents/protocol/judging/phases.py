@@ -79,6 +79,11 @@ def rest_start(phase: MotionPhase, fps: float) -> int:
     return phase.end - max(1, round(min(fps, (phase.end - phase.start) / 4)))
 
 
+def cause_of(context: RuleContext, phase: MotionPhase) -> MotionPhase | None:
+    """The phase that causes another one; None if the plan has none."""
+    return next((other for other in context.planned.motion.phases if other.name == phase.cause), None)
+
+
 def onset_tolerance(context: RuleContext, phase: MotionPhase) -> float:
     """How many frames early or late a phase may start."""
     return max(context.tolerances.onset, context.tolerances.onset_share * (phase.end - phase.start))
@@ -87,7 +92,7 @@ def onset_tolerance(context: RuleContext, phase: MotionPhase) -> float:
 def onset_window(context: RuleContext, phase: MotionPhase) -> float:
     """How many frames early or late a phase may start; nobody can plan to the frame when another phase sets it off."""
     most = onset_tolerance(context, phase)
-    cause = next((other for other in context.planned.motion.phases if other.name == phase.cause), None)
+    cause = cause_of(context, phase)
     if cause is None or cause.actor == phase.actor:
         return most
     return max(most, context.tolerances.onset_caused * (cause.end - cause.start))

@@ -158,11 +158,10 @@ class Sockets:
         # key → when it is shown, where that is more than one condition for each property, or none of the node's
         self.conditions = self.checked()
         # Those of passes stand where the others that are shown leave room.
-        self.placeless = set()
+        self.placeless = {}
         if passes.reads_passes(nodes[0]):
-            found = passes.conditions(nodes[0], lambda state: self.look(nodes[0], state))
-            self.conditions |= found
-            self.placeless |= found.keys()
+            self.placeless = passes.conditions(nodes[0], lambda state: self.look(nodes[0], state))
+        self.conditions |= self.placeless
         self.hidden = self.rows.keys() - new
 
     def look(self, node, mode):

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key
 from kb_build.symbols.api_names import TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.messages.absent import ANY, as_written
+from kb_serve.recognise.names.likely_values import item_called
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -44,10 +44,9 @@ class GivenValues:
             pointer, kinds = self._reader.symbol(path), self._reader.symbol(path + _KIND)
             if not pointer or not kinds or not self._reader.descends(TYPES + given, TYPES + pointer.target):
                 continue
-            for item in kinds.enum_items:
-                if key(item.name) == key(given):
-                    setting = f"{kinds.name} = {item.identifier!r}"
-                    return f"Set `{setting}` before `{pointer.name}`: it decides which class that takes."
+            if kind := item_called(kinds, [given]):
+                setting = f"{kinds.name} = {kind!r}"
+                return f"Set `{setting}` before `{pointer.name}`: it decides which class that takes."
         return ""
 
     def _what_to_give(self, wanted: str, given: str) -> Iterator[str]:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import terms, words
+from kb_build.index.analysis import key, terms, words
 from kb_serve.recognise.names.corrections import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from kb_build.symbols.records import EnumItem
+    from kb_build.symbols.records import EnumItem, Symbol
     from kb_serve.reader import BaseReader
 
 _MOST = 3
@@ -20,6 +20,14 @@ _TELLING = 2  # words of a label that other texts have
 _SHORT = 3  # … of a wrong one that an item begins with
 _OPPOSITES = frozenset({"neg", "negative"})
 _MINUS = re.compile(r"-(?=[XYZ]$)")
+
+
+def item_called(setting: Symbol | None, names: Iterable[str]) -> str:
+    """The item of an enumeration whose label is one of some names, however it is spelled; empty for none."""
+    keys = {key(name) for name in names}
+    return (
+        next((one.identifier for one in setting.enum_items if key(one.name) in keys), "") if setting else ""
+    )
 
 
 def likely_values(written: str, items: Sequence[str]) -> list[str]:

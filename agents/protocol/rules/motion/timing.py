@@ -12,6 +12,7 @@ from agents.protocol.judging.measured_motion import measured_motion, path_reques
 from agents.protocol.judging.phases import (
     RESTING,
     actual_span,
+    cause_of,
     find_onset,
     moving_speed,
     onset_tolerance,
@@ -101,11 +102,10 @@ def _wrong_onsets(context: RuleContext, measures: Measures) -> Iterator[Finding]
 
 def _effects(context: RuleContext) -> list[tuple[int, MotionPhase, MotionPhase]]:
     """(index, effect, its cause) for every moving phase with a cause. Raises NotApplicable."""
-    by_name = {phase.name: phase for phase in context.planned.motion.phases}
     effects = [
-        (place, phase, by_name[phase.cause])
+        (place, phase, cause)
         for place, phase in planned_phases(context)
-        if phase.cause is not None and phase.cause in by_name and phase.kind not in RESTING
+        if phase.kind not in RESTING and (cause := cause_of(context, phase)) is not None
     ]
     if not effects:
         raise NotApplicable("the plan has no phase with a cause")
