@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -105,24 +106,25 @@ def _judge(request: JudgeRequest, given: dict[str, Any]) -> None:
     provider = provider_of(given["provider"], tell=tell_on_terminal, **{name: given[name] for name in names})
     judgements: list[Judgement] = []
     failed: list[tuple[int, NotJudged]] = []
-    for number in range(given["repeat"]):
-        try:
-            judgements.append(
-                run(
-                    request.prompt,
-                    request.frames,
-                    static=request.static,
-                    provider=provider,
-                    cache=given["cache"],
-                    scene=request.scene,
-                    repetition=number,
-                    tell=tell_on_terminal,
+    with closing(provider):
+        for number in range(given["repeat"]):
+            try:
+                judgements.append(
+                    run(
+                        request.prompt,
+                        request.frames,
+                        static=request.static,
+                        provider=provider,
+                        cache=given["cache"],
+                        scene=request.scene,
+                        repetition=number,
+                        tell=tell_on_terminal,
+                    )
                 )
-            )
-        except NotJudged as error:
-            failed.append((number, error))
-            if error.reason not in _PASSING:
-                break
+            except NotJudged as error:
+                failed.append((number, error))
+                if error.reason not in _PASSING:
+                    break
     agreements = agreement(judgements) if len(judgements) > 1 else None
     if given["as_json"]:
         click.echo(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -103,7 +103,8 @@ def run(**given: Any) -> None:
         specs = _specs(given["scenes"], system)
         tasks = make_tasks(system, specs, given["out"].expanduser().resolve(), _scoring_options(given))
         system.ready()
-        summary = sweep(tasks, _judge(given), _executor(given), make_view(sys.stderr, len(tasks)))
+        with closing(_judge(given)) as judge:
+            summary = sweep(tasks, judge, _executor(given), make_view(sys.stderr, len(tasks)))
     _conclude([summary], given["out"])
 
 
@@ -123,11 +124,11 @@ def rescore(results: Path, **given: Any) -> None:
         systems = make_rescore_tasks(results.expanduser().resolve(), _scoring_options(given))
         if not systems:
             raise click.UsageError(f"There are no results in {results}.")
-        judge = _judge(given)
-        for tasks in systems:
-            click.echo(f"{tasks[0].system.info.name}:", err=True)
-            view = make_view(sys.stderr, len(tasks))
-            summaries.append(sweep(tasks, judge, _executor(given), view))
+        with closing(_judge(given)) as judge:
+            for tasks in systems:
+                click.echo(f"{tasks[0].system.info.name}:", err=True)
+                view = make_view(sys.stderr, len(tasks))
+                summaries.append(sweep(tasks, judge, _executor(given), view))
     _conclude(summaries, results)
 
 

@@ -21,9 +21,9 @@ from simworlds.llm.spending import Metered, Spending
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from simworlds.llm.messages import Ask, Model, Turn
+    from simworlds.llm.messages import Ask, Turn
     from simworlds.llm.prices import Price
-    from simworlds.llm.providers import ProviderName
+    from simworlds.llm.providers import Connection, ProviderName
     from simworlds.llm.retries import Retry
 
 
@@ -54,7 +54,7 @@ class JudgeProvider:
     def __init__(
         self,
         identity: JudgeIdentity,
-        connect: Callable[[], Model],
+        connect: Callable[[], Connection],
         *,
         spending: Spending | None = None,
         prices: Prices | None = None,
@@ -65,27 +65,34 @@ class JudgeProvider:
         self.prices = prices or Prices()
         self.spending = spending or Spending(prices=self.prices)
         self._connect = connect
-        self._connected: Model | None = None
+        self._connection: Connection | None = None
         self._lock = threading.Lock()
 
     def ready(self) -> None:
         """Checks, without asking anything, that the key and all packages are there. Raises NotJudged."""
         with self._lock:
-            if self._connected is None:
+            if self._connection is None:
                 try:
-                    self._connected = Metered(self._connect(), self.spending)
+                    self._connection = self._connect()
                 except Rejected as error:
                     raise NotJudged("not set up", str(error)) from error
 
     def answer(self, ask: Ask, on_text: Callable[[str], object] | None = None) -> Turn:
         """The turn, see Model. Raises ModelError, NotJudged."""
         self.ready()
-        assert self._connected is not None
+        assert self._connection is not None
         ask = replace(ask, model=self.model)
         if self.name in _STRUCTURED:
             (form,) = ask.tools
             ask = replace(ask, tools=(), form=form)
-        return _as_text(self._connected.answer(ask, on_text))
+        return _as_text(Metered(self._connection, self.spending).answer(ask, on_text))
+
+    def close(self) -> None:
+        """Closes the connections; what is asked afterwards opens new ones."""
+        with self._lock:
+            if self._connection is not None:
+                self._connection.close()
+                self._connection = None
 
 
 def provider_of(  # noqa: PLR0913

@@ -53,6 +53,11 @@ class SweepJudge:
     provider: JudgeProvider | None
     why: str = ""
 
+    def close(self) -> None:
+        """Closes the provider's connections."""
+        if self.provider is not None:
+            self.provider.close()
+
 
 def judge_of(options: JudgeOptions) -> SweepJudge:
     """Checks that the key and all packages are there; sends nothing."""

@@ -72,6 +72,11 @@ _MOVED = (
     "A rigid body's simulation moves `ob.matrix_world`, not `ob.location` or `ob.rotation_euler`: call "
     "`scene.frame_set(frame)` for every frame from the first, then read `ob.matrix_world.translation`."
 )
+_RACED = (
+    "A rigid body with a mesh for its shape ('CONVEX_HULL', 'MESH') and a modifier that moves with the frame "
+    "(Collision, Wave) crashes Blender once in some hundred runs, as it begins to simulate, where its `mesh_source` is "
+    "'DEFORM', the default, or 'FINAL': set `ob.rigid_body.mesh_source = 'BASE'` if the shape need not deform."
+)
 _RANGED = (
     '`ob["x"] = 1.0` makes the property, `ob.id_properties_ui("x").update(min=0.0, max=2.0, description="…")` gives it '
     "limits, which the panel keeps and scripts need not. Choices are named numbers: after "
@@ -176,6 +181,7 @@ ADVICE: tuple[Advice, ...] = (
         # By one of these a question says that something else than a script or its keys moves the object.
         asked=_stems("bake body bounce drop fall physics rigid roll settle simulate simulation"),
     ),
+    Advice(_RACED, _of("RigidBodyObject.mesh_source", "CollisionModifier")),
     Advice(
         _RANGED,
         frozenset({_RANGES}),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import json
+from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -49,8 +50,9 @@ def api(monkeypatch: pytest.MonkeyPatch) -> Iterator[FakeMessagesAPI]:
 
 
 @pytest.fixture
-def claude(api: FakeMessagesAPI) -> JudgeProvider:
-    return provider_of("anthropic")
+def claude(api: FakeMessagesAPI) -> Iterator[JudgeProvider]:
+    with closing(provider_of("anthropic")) as provider:
+        yield provider
 
 
 def blocks_of(body: dict[str, Any]) -> list[dict[str, Any]]:
@@ -87,8 +89,11 @@ def test_the_judge_sees_the_request_the_goal_and_then_the_result_and_no_more(
 
 def test_another_provider_gets_the_same_question(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OPENAI_API_KEY", "any")
-    with FakeChatAPI(lambda params: Said(json.dumps(marks(0, 0, 1, 1)))) as server:
-        judged = judge_edit(INSTRUCTION, GOAL, RESULT, provider_of("openai", base_url=server.base_url), None)
+    with (
+        FakeChatAPI(lambda params: Said(json.dumps(marks(0, 0, 1, 1)))) as server,
+        closing(provider_of("openai", base_url=server.base_url)) as provider,
+    ):
+        judged = judge_edit(INSTRUCTION, GOAL, RESULT, provider, None)
     assert (judged.marks.score, judged.provider) == (0.5, "openai")
     assert len(server.requests) == 1
 

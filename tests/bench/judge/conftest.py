@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from judge_apis import Anthropic, OpenAI, film
@@ -24,17 +24,20 @@ def _environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 @pytest.fixture(params=[Anthropic, OpenAI], ids=["anthropic", "openai"])
 def api(request: pytest.FixtureRequest) -> Iterator[Anthropic | OpenAI]:
     """Both providers, one after the other."""
-    made = request.param()
-    with made.server:
-        yield made
+    yield from _served(request.param())
 
 
 @pytest.fixture
 def claude() -> Iterator[Anthropic]:
     """One provider, where it does not matter which."""
-    made = Anthropic()
-    with made.server:
-        yield made
+    yield from _served(Anthropic())
+
+
+def _served(api: Anthropic | OpenAI) -> Iterator[Any]:
+    with api.server:
+        yield api
+    for provider in api.providers:
+        provider.close()
 
 
 @pytest.fixture

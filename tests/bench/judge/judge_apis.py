@@ -101,6 +101,7 @@ class Anthropic:
         self.server = FakeMessagesAPI(self._answer)
         self.script = Script()
         self.pauses: list[float] = []
+        self.providers: list[JudgeProvider] = []
 
     def provider(
         self,
@@ -113,7 +114,8 @@ class Anthropic:
         settings = Settings(api_key="key", base_url=self.server.base_url, patience=RetryPolicy(tries=tries))
         connect = lambda: Claude(settings, pause=self.pauses.append)  # noqa: E731
         identity = JudgeIdentity(self.name, model or self.model, said_address)
-        return JudgeProvider(identity, connect, spending=Spending(max_cost))
+        self.providers.append(JudgeProvider(identity, connect, spending=Spending(max_cost)))
+        return self.providers[-1]
 
     def fail(self, *faults: Any) -> None:
         self.server.fail("POST /v1/messages", *faults)
@@ -158,6 +160,7 @@ class OpenAI:
         self.server = FakeChatAPI(self._answer)
         self.script = Script()
         self.pauses: list[float] = []
+        self.providers: list[JudgeProvider] = []
 
     def provider(
         self,
@@ -170,7 +173,8 @@ class OpenAI:
         settings = Settings(api_key="key", base_url=self.server.base_url, patience=RetryPolicy(tries=tries))
         connect = lambda: OpenAIChat(settings, pause=self.pauses.append)  # noqa: E731
         identity = JudgeIdentity(self.name, model or self.model, said_address)
-        return JudgeProvider(identity, connect, spending=Spending(max_cost))
+        self.providers.append(JudgeProvider(identity, connect, spending=Spending(max_cost)))
+        return self.providers[-1]
 
     def fail(self, *faults: Any) -> None:
         self.server.fail(*faults)

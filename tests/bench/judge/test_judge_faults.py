@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -247,7 +248,8 @@ def test_a_given_price_counts(api, frames):
     provider = provider_of(
         api.name, model="some-model", base_url=api.server.base_url, price=Price(10.0, 100.0), max_cost=9
     )
-    assert judged(api, frames, provider=provider).cost == pytest.approx((1000 * 10 + 200 * 100) / 1e6)
+    with closing(provider):
+        assert judged(api, frames, provider=provider).cost == pytest.approx((1000 * 10 + 200 * 100) / 1e6)
 
 
 @pytest.mark.parametrize(("name", "key"), [("anthropic", "ANTHROPIC_API_KEY"), ("openai", "OPENAI_API_KEY")])
@@ -273,7 +275,8 @@ def test_without_the_extra_it_says_what_to_install(monkeypatch):
     with pytest.raises(NotJudged, match=r"pip install 'simworlds\[openai\]'") as caught:
         provider_of("openai")
     assert caught.value.reason == "not set up"
-    provider_of("anthropic").ready()
+    with closing(provider_of("anthropic")) as provider:
+        provider.ready()
 
 
 def test_an_unknown_provider_is_reported():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from contextlib import closing
 from typing import TYPE_CHECKING
 
 import pytest
@@ -68,9 +69,9 @@ def out(swept: Path, tmp_path: Path) -> Path:
 def judged(out: Path, api: Anthropic, **given: object) -> dict[str, Judged]:
     """What stands in each system's record after a judge was asked."""
     who = {"provider": "anthropic", "base_url": api.server.base_url, "cache": out.parent / "kept", **given}
-    judge = judge_of(JudgeOptions(**who))  # type: ignore[arg-type]
-    for tasks in make_rescore_tasks(out, ScoringOptions(BlenderOptions(), RenderQuality())):
-        assert len(list(judge_all(tasks, judge))) == len(tasks)
+    with closing(judge_of(JudgeOptions(**who))) as judge:  # type: ignore[arg-type]
+        for tasks in make_rescore_tasks(out, ScoringOptions(BlenderOptions(), RenderQuality())):
+            assert len(list(judge_all(tasks, judge))) == len(tasks)
     found = {path.parent.parent.name: read_record(path.parent) for path in out.glob("*/*/record.json")}
     return {name: one.judged for name, one in found.items() if one is not None and one.judged is not None}
 

@@ -32,10 +32,20 @@ CALLS = (
 )
 
 
+_made: list[OpenAIChat] = []
+
+
 @pytest.fixture(autouse=True)
 def _no_environment(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("OPENAI_API_KEY", "OPENAI_BASE_URL"):
         monkeypatch.delenv(name, raising=False)
+
+
+@pytest.fixture(autouse=True)
+def _closed() -> Iterator[None]:
+    yield
+    while _made:
+        _made.pop().close()
 
 
 @pytest.fixture
@@ -46,7 +56,8 @@ def server() -> Iterator[FakeChatAPI]:
 
 def model_of(server: FakeChatAPI, *, tries: int = 4, **given: Any) -> OpenAIChat:
     settings = Settings("key", server.base_url, 10.0, patience=RetryPolicy(tries=tries), **given)
-    return OpenAIChat(settings, pause=lambda seconds: None, chance=random.Random(1))
+    _made.append(OpenAIChat(settings, pause=lambda seconds: None, chance=random.Random(1)))
+    return _made[-1]
 
 
 # Requests

@@ -313,6 +313,7 @@ hinge.rigid_body_constraint.object1 = bpy.data.objects['Brick.001']
 bpy.ops.mesh.primitive_plane_add(size=20)
 bpy.context.object.name = 'Floor'
 bpy.ops.rigidbody.object_add(type='PASSIVE')
+bpy.context.object.rigid_body.collision_shape = 'BOX'  # of a mesh with Collision, Blender crashes once in 500 times
 bpy.context.object.modifiers.new('Collision', 'COLLISION').settings.friction_factor = 0.5
 """
 
