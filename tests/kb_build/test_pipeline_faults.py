@@ -141,7 +141,7 @@ def test_an_interrupted_build_says_so_and_leaves_nothing_running(
 
 @pytest.mark.parametrize(
     ("limit", "words", "place"),
-    [(5_000_000, [], "blender-"), (4_000_000, ["--force"], "extracts")],
+    [(5_000_000, [], "blender-"), (1_000_000, ["--force"], "extracts")],
     ids=["the base does not fit", "the extract does not fit"],
 )
 def test_a_full_disk_is_named_and_the_old_base_stands(
