@@ -141,8 +141,12 @@ def test_an_interrupted_build_says_so_and_leaves_nothing_running(
 
 @pytest.mark.parametrize(
     ("limit", "words", "place"),
-    [(5_000_000, [], "blender-"), (1_000_000, ["--force"], "extracts")],
-    ids=["the base does not fit", "the extract does not fit"],
+    [
+        pytest.param(5_000_000, [], "blender-", id="the base does not fit"),
+        pytest.param(
+            1_000_000, ["--force"], "extracts", id="the extract does not fit", marks=pytest.mark.whole
+        ),
+    ],
 )
 def test_a_full_disk_is_named_and_the_old_base_stands(
     small: Built, limit: int, words: list[str], place: str

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from whole import examples
 
 from kb_check.in_queries import notes_on_code
 
@@ -130,5 +131,5 @@ def test_statements_of_blenders_own_scripts_are_left_alone(kb: KnowledgeBase) ->
             if len(text := ast.unparse(node)) < 250
         }
     )
-    chosen = random.Random(5).sample(statements, 4_000)
+    chosen = random.Random(5).sample(statements, examples(4_000))
     assert [(text, notes) for text in chosen if (notes := notes_on_code(kb.reader, text))] == []

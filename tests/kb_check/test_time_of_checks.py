@@ -10,6 +10,7 @@ from textwrap import dedent
 from typing import TYPE_CHECKING
 
 import pytest
+from whole import by_turns
 
 from kb_check.run_reach import RunReach
 
@@ -171,7 +172,7 @@ _KINDS = {
 }
 
 
-@pytest.mark.parametrize("kind", _KINDS)
+@pytest.mark.parametrize("kind", by_turns(_KINDS))
 def test_a_script_that_is_four_times_as_long_takes_about_four_times_the_work(
     checker: Checker, kind: str
 ) -> None:

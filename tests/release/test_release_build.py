@@ -114,11 +114,12 @@ def test_the_bundle_starts_as_a_client_starts_it(bundle: Path, tmp_path: Path) -
     with zipfile.ZipFile(bundle) as archive:
         archive.extractall(tmp_path / "bundle")
     manifest = json.loads((tmp_path / "bundle" / "manifest.json").read_text())
-    wheel = only(tmp_path / "bundle", "*.whl")
+    with zipfile.ZipFile(only(tmp_path / "bundle", "*.whl")) as archive:
+        archive.extractall(tmp_path / "installed")
     wire = Wire(
         [sys.executable, str(tmp_path / "bundle" / manifest["server"]["entry_point"])],
         tmp_path / "home",
-        PYTHONPATH=str(wheel),
+        PYTHONPATH=str(tmp_path / "installed"),
         SIMWORLDS_BASE_URL="",
     )
     with wire.process:

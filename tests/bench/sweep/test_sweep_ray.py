@@ -64,6 +64,7 @@ def many(made: Path, tmp_path: Path) -> Path:
     return folder
 
 
+@pytest.mark.whole
 @pytest.mark.blender
 def test_a_killed_node_costs_only_time(
     many: Path, tmp_path: Path, cluster: subprocess.Popen[str], command: Callable[..., Command]

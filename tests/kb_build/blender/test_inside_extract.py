@@ -968,6 +968,7 @@ def test_names_that_the_maker_gives_and_times_are_not_defaults(symbols: dict[str
         assert "compared" not in symbols[f"bpy.types.{path}"].flags
 
 
+@pytest.mark.whole
 def test_a_blender_that_has_moved_is_asked_again_and_tells_another_user_the_same_bytes(
     base: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
