@@ -56,6 +56,8 @@ _TOLD = {
 }
 _SOCKET = "NodeSocket"
 _MATERIAL = "Material"
+_OF_WORLDS = frozenset({"ShaderNodeTexEnvironment", "ShaderNodeTexSky"})
+_ENDS_OF_GROUPS = frozenset({"NodeGroupInput", "NodeGroupOutput"})  # no material's own tree has them
 _NEVER_ACTIVE = frozenset({"Nodes"})  # none is, of those that scripts make
 # Objects have them too, but only chains of bones are moved by them.
 _OF_BONES = ("KinematicConstraint", "SplineIKConstraint")
@@ -183,8 +185,10 @@ def _place(expressions: dict[str, str], graph: _Graph, places: Mapping[str, str]
             expressions[cls] = f"{expressions['PoseBone']}.constraints{_key(cls, graph)}"
     # A shader's nodes live in a material, where there are others like it; some in the tree of another data-block.
     for cls in (cls for cls, trees in graph.trees.items() if "ShaderNodeTree" in trees):
-        holder = places.get(cls, _MATERIAL)
+        holder = places.get(cls, "World" if cls in _OF_WORLDS else _MATERIAL)
         expressions[cls] = f"{expressions.get(holder, holder.lower())}.node_tree.nodes{_key(cls, graph)}"
+    for cls in _ENDS_OF_GROUPS & expressions.keys():
+        expressions[cls] = f"bpy.data.node_groups[0].nodes{_key(cls, graph)}"
     # A socket, on a node that has one like it: RNA's way leads to any node. Those of no node have no way.
     for cls in graph.below(_SOCKET):
         known = [

@@ -53,6 +53,7 @@ _BUILTINS = frozenset(dir(builtins)) | {
 _LAYOUT = Instance("bpy.types.UILayout")
 _OF_CONTEXT = re.compile(r"\bbpy\.context\.\w+")
 _CONTEXTS = ("bpy.context.", "bpy.types.Context.")
+_STEP_LEFT_OUT = 0.8  # what is added for each line that prepares what is used, and that there is no room for
 _OF_EDITORS = 20.0  # what is added to the cost of code that runs in some editors only
 _OWN_BASE = 3.0  # the same for a class that derives from others of its script, too
 
@@ -211,6 +212,7 @@ class _Script:
         # statement → the block that it stands in, and block → the one around it
         self._block_of: dict[ast.stmt, int] = {}
         self._around: dict[int, int] = {}
+        self._statements: dict[int, list[ast.stmt]] = defaultdict(list)  # by block
         # (function, name) → line, block and text of each of its bindings
         self._bound: dict[tuple[int, str], list[tuple[int, int, str]]] = defaultdict(list)
         self._texts: dict[ast.stmt, tuple[float, int, str] | None] = {}
@@ -227,6 +229,7 @@ class _Script:
             for statement in statements:
                 self._scope_of[statement] = number
                 self._block_of[statement] = block
+                self._statements[block].append(statement)
                 inner = number
                 match statement:
                     case ast.Assign(targets=[ast.Name(id=name)], value=value) if (
@@ -282,26 +285,33 @@ class _Script:
         first = statement.lineno
         unknown, of_editors = 0, False
         layouts = {node.id for node in names if self._analysis.types.get(node) == _LAYOUT}
-        bound: list[tuple[int, str]] = []
+        bound: list[tuple[int, str, str]] = []
         for name in dict.fromkeys(node.id for node in names if isinstance(node.ctx, ast.Load)):
             if name in layouts:
                 continue  # everyone knows what a layout is
             if (line := self._binding(statement, name)) is not None:
-                bound.append(line)
+                bound.append((*line, name))
             elif any(self._analysis.types.get(n, UNKNOWN) is UNKNOWN for n in names if n.id == name):
                 unknown += 1
             else:
                 unknown += 0.4
         # The nearest first: what a loop binds may be used by what is bound in it.
-        for number, line in sorted(bound, reverse=True):
-            if code.count("\n") + 1 < _MOST_LINES and line not in code:
-                code = f"{line}\n{_indented(code) if line.startswith('for ') else code}"
+        left_out = 0
+        for number, line, name in sorted(bound, reverse=True):
+            steps = self._steps_between(statement, name, number)
+            free = _MOST_LINES - 1 - code.count("\n")
+            if free <= len(steps):
+                left_out += len(steps)
+                steps = []
+            if free and line not in code:
+                shown = "\n".join([*(step for step in steps if step not in code), code])
+                code = f"{line}\n{_indented(shown) if line.startswith('for ') else shown}"
                 first = min(first, number)
                 of_editors |= number in self._editor_lines
         is_preset = self._file.startswith(PRESETS)
         if (is_preset and any(map(self._is_of_editors, _OF_CONTEXT.findall(code)))) or not _is_code(code):
             return None
-        cost = 1.2 * unknown + len(code) / 60 + 0.3 * code.count("\n")
+        cost = 1.2 * unknown + len(code) / 60 + 0.3 * code.count("\n") + _STEP_LEFT_OUT * left_out
         cost += 1.0 if "self." in code else 0.0
         cost += 1.5 if isinstance(statement, (ast.If, ast.While, ast.Return)) else 0.0
         if isinstance(statement, ast.Assign) and _is_literal(statement.value):
@@ -358,6 +368,20 @@ class _Script:
             return None
         return line, text.split("  #")[0].strip()
 
+    def _steps_between(self, statement: ast.stmt, name: str, bound: int) -> list[str]:
+        """What is done to a name's thing between the line where it is bound and a statement, in the same block.
+
+        Without it the statement may fail: ``strip.keyframe_points.add(2)`` before the first of them is set.
+        """
+        return [
+            self._lines[step.lineno - 1].split("  #")[0].strip()
+            for step in self._statements[self._block_of.get(statement, -1)]
+            if bound < step.lineno < statement.lineno
+            and step.lineno == step.end_lineno
+            and len(self._lines[step.lineno - 1].strip()) <= _LONGEST_LINE
+            and _changes(step, name)
+        ]
+
     def _blocks(self, statement: ast.stmt) -> Iterator[int]:
         """The blocks that a statement stands in, innermost first."""
         block = self._block_of.get(statement, -1)
@@ -374,6 +398,26 @@ def _names(statement: ast.stmt) -> Iterator[ast.Name]:
         if isinstance(node, ast.Name):
             yield node
         queue += [child for child in children(node) if not isinstance(child, ast.stmt)]
+
+
+def _changes(statement: ast.stmt, name: str) -> bool:
+    """Whether a statement sets something of a name's thing, calls something of it, or fills it."""
+    match statement:
+        case ast.Assign(targets=[(ast.Attribute() | ast.Subscript()) as target]):
+            return _root(target) == name
+        case ast.Expr(value=ast.Call(func=ast.Attribute(attr="foreach_get"), args=[_, ast.Name(id=filled)])):
+            return filled == name
+        case ast.Expr(value=ast.Call(func=ast.Attribute() as called)):
+            return _root(called) == name
+        case _:
+            return False
+
+
+def _root(node: ast.expr) -> str:
+    """The name that an expression begins with; empty for none."""
+    while isinstance(node, (ast.Attribute, ast.Subscript, ast.Call)):
+        node = node.func if isinstance(node, ast.Call) else node.value
+    return node.id if isinstance(node, ast.Name) else ""
 
 
 def _is_literal(node: ast.expr) -> bool:

@@ -51,9 +51,9 @@ _STAYING = (
     "would run it."
 )
 _TAGGED = (
-    "A driver does not see a custom property that a script has just set, and stays invalid: after "
-    '`owner["name"] = 3.0` call `owner.id_data.update_tag()`, also after each later change. One that is invalid '
-    "already needs `driver.expression = driver.expression`, too."
+    "A driver does not see a custom property that a script sets on another object than its own, or once the driver was "
+    'evaluated, and stays invalid: after `owner["name"] = 3.0` call `owner.id_data.update_tag()`, also after each '
+    "later change. One that is invalid already needs `driver.expression = driver.expression`, too."
 )
 _EVERY_POINT = (
     "Set `radius` and `opacity` of every point: the first `opacity` that is set in a drawing makes it 0 for all its "
@@ -76,6 +76,19 @@ _RACED = (
     "A rigid body with a mesh for its shape ('CONVEX_HULL', 'MESH') and a modifier that moves with the frame "
     "(Collision, Wave) crashes Blender once in some hundred runs, as it begins to simulate, where its `mesh_source` is "
     "'DEFORM', the default, or 'FINAL': set `ob.rigid_body.mesh_source = 'BASE'` if the shape need not deform."
+)
+_JOINED = (
+    "In a script: `with bpy.context.temp_override(active_object=a, selected_editable_objects=[a, b]): "
+    "bpy.ops.object.join()`; `a` stays."
+)
+_NO_BONE = "A new bone's `head` and `tail` are both at the armature's origin: set both, or it has no length."
+_FLAT = (
+    "A face that `mesh.from_pydata(…)` makes is flat (`use_smooth` False), one of `mesh.polygons.add(count)` smooth: "
+    "`mesh.shade_smooth()` and `mesh.shade_flat()` set it for all."
+)
+_TAB = (
+    "`ui_type` only says which tab of the panel is open: `bpy.ops.dpaint.type_toggle(type='CANVAS')` (or 'BRUSH') "
+    "makes `canvas_settings` (`brush_settings`), which are None before, on the active object's modifier."
 )
 _RANGED = (
     '`ob["x"] = 1.0` makes the property, `ob.id_properties_ui("x").update(min=0.0, max=2.0, description="…")` gives it '
@@ -172,7 +185,7 @@ ADVICE: tuple[Advice, ...] = (
     Advice(_BAKED, frozenset({"bpy.ops.object.bake"})),
     Advice(_BAKED_BY, frozenset({"bpy.ops.object.bake"}) | _of("CyclesRenderSettings.bake_type")),
     Advice(_COMPRESSED, frozenset({"bpy.ops.wm.save_as_mainfile", "bpy.ops.wm.save_mainfile"})),
-    Advice(_UNREAD, _of("Image.pixels", "Image"), asked=_stems("result")),
+    Advice(_UNREAD, _of("Image.pixels", "Image"), asked=_stems("render result")),
     Advice(_UNRENDERED, _of("World.color")),
     Advice(_MOVED, frozenset({_RIGID_BODY}), chapters_of=_RIGID_BODY),
     Advice(
@@ -181,6 +194,10 @@ ADVICE: tuple[Advice, ...] = (
         # By one of these a question says that something else than a script or its keys moves the object.
         asked=_stems("bake body bounce drop fall physics rigid roll settle simulate simulation"),
     ),
+    Advice(_JOINED, frozenset({"bpy.ops.object.join"})),
+    Advice(_NO_BONE, _of("ArmatureEditBones.new")),
+    Advice(_FLAT, _of("MeshPolygon.use_smooth")),
+    Advice(_TAB, _of("DynamicPaintModifier", "DynamicPaintModifier.ui_type")),
     Advice(_RACED, _of("RigidBodyObject.mesh_source", "CollisionModifier")),
     Advice(
         _RANGED,

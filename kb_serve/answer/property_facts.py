@@ -105,6 +105,6 @@ def _stops_text(symbol: Symbol) -> str:
             where.append(sides[side])
             tried.append(f"no {kept[side]} than {end}")
     if tried:
-        told = f"what else is set may limit it from {' and '.join(where)}"
-        known.append(f"{told} (the one that was tried kept {' and '.join(tried)})")
+        told = f"other settings may limit it from {' and '.join(where)}"
+        known.append(f"{told} (a new one: {' and '.join(tried)})")
     return ", ".join(known)

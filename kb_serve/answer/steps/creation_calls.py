@@ -67,7 +67,8 @@ class CreationCalls:
         ]
         also = _also([one for one in choices if f"'{one}'" not in creation.call])
         new = self._scene.variables.of(main)
-        return [*steps, made + also, *self._instances.parts_given(main, ready.expression, new)]
+        given = self._instances.parts_given(main, ready.expression, new)
+        return [*_on_channels_of_their_own([*steps, made + also]), *given]
 
     def _before(self, cls: str, call: str) -> Iterator[str]:
         """The steps that make what must be there before an operator makes an instance of a class."""
@@ -78,6 +79,15 @@ class CreationCalls:
                 yield made_line(made, earlier, self._scene)
         if call.startswith(OPERATORS) and (operator := reader.symbol(call.partition("(")[0])):
             yield from before(operator, self._scene)
+
+
+def _on_channels_of_their_own(steps: list[str]) -> list[str]:
+    """Steps that make strips: those that overlap in time do not share a channel."""
+    told: list[str] = []
+    for step in steps:
+        taken = sum(", channel" in one for one in told)
+        told.append(step.replace(", channel,", f", channel + {taken},", 1) if taken else step)
+    return told
 
 
 def _also(choices: list[str]) -> str:

@@ -71,7 +71,14 @@ def stopping(struct, prop, side, kept):
     """The other number of an instance that decides where one stops: the stop goes as far as it does; "" for none."""
     for other in struct.bl_rna.properties:
         name = other.identifier
-        if other.type != prop.type or other.is_array or other == prop or struct.is_property_readonly(name):
+        is_old = getattr(other, "is_deprecated", False)
+        if (
+            is_old
+            or other.type != prop.type
+            or other.is_array
+            or other == prop
+            or struct.is_property_readonly(name)
+        ):
             continue
         before, own = getattr(struct, name), getattr(struct, prop.identifier)
         # Towards the number itself, so that it need not give way.
@@ -80,9 +87,22 @@ def stopping(struct, prop, side, kept):
         again = stop(struct, prop, side) if goes else None
         read_back(struct, name, before)
         read_back(struct, prop.identifier, own)
-        if again is not None and same(again - kept, goes):
+        if again is not None and same(again - kept, goes) and keeps_apart(struct, prop, side, kept, name):
             return name
     return ""
+
+
+def keeps_apart(struct, prop, side, kept, other):
+    """Whether a stop is as far from another number as before, once the number that stops there has moved away from it.
+
+    A strip's duration ends its left handle only as long as the strip begins at frame 1.
+    """
+    own, distance = getattr(struct, prop.identifier), kept - getattr(struct, other)
+    moved = read_back(struct, prop.identifier, own + (-1 if side == "max" else 1) * PAST)
+    again = None if moved is None or same(moved, own) else stop(struct, prop, side)
+    apart = again is None or same(again - getattr(struct, other), distance)
+    read_back(struct, prop.identifier, own)
+    return apart
 
 
 def stops(struct, prop):

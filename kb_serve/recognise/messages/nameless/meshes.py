@@ -27,7 +27,14 @@ MESHES = (
     NamelessMessage(
         ("internal error setting the array",),
         (f"{T}bpy_prop_collection.foreach_set",),
-        "The list is longer or shorter than elements × values of each (3 for `co`), or of another type.",
+        "The list has fewer numbers than elements × values of each (3 for `co`), or, for an attribute's `data`, more; "
+        "rows count as one: give `array.ravel()`.",
+    ),
+    NamelessMessage(
+        ("couldn't access the py sequence",),
+        (f"{T}bpy_prop_collection.foreach_set", f"{T}bpy_prop_collection.foreach_get"),
+        "It takes a flat list of plain numbers: no tuples (`[number for co in coords for number in co]`), no rows "
+        "(`array.ravel()`), no texts.",
     ),
     NamelessMessage(
         ("Vertex not in group",),

@@ -63,4 +63,10 @@ RENDERING = (
         ("bpy.ops.fluid.bake_all", f"{T}FluidModifier.fluid_type"),
         "The active object must be the fluid's domain, of `fluid_type = 'DOMAIN'`.",
     ),
+    NamelessMessage(
+        ("Strips.new_effect: invalid length",),
+        (f"{T}StripsTopLevel.new_effect",),
+        "Effects without input strips (TEXT, COLOR, ADJUSTMENT, MULTICAM) need a length: "
+        "`strips.new_effect(name=\"Title\", type='TEXT', channel=2, frame_start=1, length=50)`.",
+    ),
 )
