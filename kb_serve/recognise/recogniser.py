@@ -87,6 +87,11 @@ def _name(chain: Chain) -> str:
     return chain.attributes[-1] if chain.attributes else chain.root
 
 
+def _is_told(value: str, recognition: Recognition) -> bool:
+    """Whether it is already known of an enum item that it was removed."""
+    return any(removed.path.endswith(f":{value}") for removed in recognition.removed)
+
+
 class Recogniser:
     """Recognises names against one base."""
 
@@ -216,14 +221,18 @@ class Recogniser:
         return next((plain_path(removed.targets[0]) for removed in gone if removed.targets), "")
 
     def _removed_values(self, text: str, recognition: Recognition) -> None:
-        """Adds enum items that a property in the query has only in other versions."""
+        """Adds enum items that a property in the query has only in other versions, and such that no other has now."""
         for value in self._enum_values.values(text):
-            if any(removed.path.endswith(f":{value}") for removed in recognition.removed):
+            if _is_told(value, recognition):
                 continue
             for match in [match for match in recognition.matches if match.sure >= _SURE]:
                 symbol = self._reader.symbol(match.id)
                 if symbol and (removed := self._old.value(symbol, value)):
                     recognition.add_removed(removed)
+            if not _is_told(value, recognition) and "_" in value and not self._reader.enum_owners(key(value)):
+                for removed in self._removed.spelled(value):
+                    if removed.path.endswith(f":{value}"):
+                        recognition.add_removed(removed)
 
     def _explain_removed(self, recognition: Recognition) -> None:
         """Adds what took the place of the removed symbols; the owner where nothing did."""
