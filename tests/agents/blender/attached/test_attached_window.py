@@ -371,13 +371,26 @@ async def test_of_a_large_scene_nothing_unrehearsed_arrives(
 
 async def test_never_undoes_the_users_own_work(client: Client, window: OpenWindow) -> None:
     await build(client, "Theirs", 2)
+    told = window.root / "theirs.txt"
+    look = f"open({str(told)!r}, 'w').write(repr([(*o.location, o.select_get()) for o in bpy.context.scene.objects]))"
+
+    def seen() -> str:
+        window.choose(look)
+        return told.read_text()
+
+    before = seen()
     window.act("mousemove", "500", "380", "key", "a")
+    assert becomes(lambda: "False" not in seen())
+    selected = seen()
     window.act("key", "g", "key", "x", "key", "2", "key", "Return")
+    assert becomes(lambda: seen() != selected)
     refused = await use(client, "blender_undo")
     assert refused.is_error
     assert "The user has changed the scene after SimWorlds' last step" in text(refused)
     window.act("key", "ctrl+z")
+    assert becomes(lambda: seen() == selected)
     window.act("key", "ctrl+z")
+    assert becomes(lambda: seen() == before)
     undone = await use(client, "blender_undo")
     assert "The scene is as it was before them" in text(undone)
     assert "The user has undone" in text(undone)
