@@ -540,7 +540,9 @@ def test_a_former_item_or_argument_is_known_too(kb: KnowledgeBase, reader: BaseR
         assert says_gone(kb, path, path), path
 
 
-@pytest.mark.parametrize("question", ["render engine {}", "how do I use {} in a script", "is {} still there?"])
+@pytest.mark.parametrize(
+    "question", ["render engine {}", "how do I use {} in a script", "is {} still there?"]
+)
 def test_a_former_item_is_known_among_other_words(kb: KnowledgeBase, question: str) -> None:
     answer = kb.query(question.format("BLENDER_EEVEE_NEXT"))
     assert "`bpy.types.RenderSettings.engine = 'BLENDER_EEVEE_NEXT'` does not exist" in answer.text
