@@ -37,11 +37,16 @@ def decorated_function(definition: ast.FunctionDef | ast.AsyncFunctionDef) -> st
     return "\n".join(lines) if is_short else None
 
 
+def without_comment(line: str) -> str:
+    """A line of a script alone, without the comment behind it."""
+    return line.split("  #", maxsplit=1)[0].strip()
+
+
 def _settings(definition: ast.ClassDef, lines: Sequence[str]) -> Iterator[str]:
     """The settings of one line each."""
     for statement in definition.body:
         if isinstance(statement, (ast.Assign, ast.AnnAssign)) and statement.lineno == statement.end_lineno:
-            text = lines[statement.lineno - 1].split("  #")[0].strip()
+            text = without_comment(lines[statement.lineno - 1])
             if len(text) <= _LONGEST_LINE:
                 yield text
 

@@ -21,7 +21,7 @@ from kb_build.flow.types import (
     ResolutionKind,
 )
 from kb_build.symbols.api_names import TYPES
-from kb_build.usage.definitions import decorated_function, derived_class
+from kb_build.usage.definitions import decorated_function, derived_class, without_comment
 from kb_build.usage.scripts import PRESETS
 from kb_build.usage.unfit_calls import unfit_statements
 
@@ -366,7 +366,7 @@ class _Script:
         line, block, text = max(near, default=(0, -1, ""))
         if block not in self._blocks(statement) or len(text.strip()) > _LONGEST_LINE:
             return None
-        return line, text.split("  #")[0].strip()
+        return line, without_comment(text)
 
     def _steps_between(self, statement: ast.stmt, name: str, bound: int) -> list[str]:
         """What is done to a name's thing between the line where it is bound and a statement, in the same block.
@@ -374,7 +374,7 @@ class _Script:
         Without it the statement may fail: ``strip.keyframe_points.add(2)`` before the first of them is set.
         """
         return [
-            self._lines[step.lineno - 1].split("  #")[0].strip()
+            without_comment(self._lines[step.lineno - 1])
             for step in self._statements[self._block_of.get(statement, -1)]
             if bound < step.lineno < statement.lineno
             and step.lineno == step.end_lineno

@@ -119,7 +119,8 @@ class Recogniser:
         for identifier in ids_in_urls(query, self._reader):
             recognition.add(identifier, 1.0, "address")
         self._spellings.recognise(query, recognition)
-        if recognition.best is None or recognition.best.sure < 1:
+        is_settled = recognition.best is not None and recognition.best.sure >= 1
+        if not is_settled:
             self._messages.recognise(query, recognition)
             text = without_callers_names(without_wording(query))
             code = _FILE_PATH.sub(" ", without_callers_names(without_wording(without_values(query))))
@@ -131,6 +132,8 @@ class Recogniser:
             if described and self._reader.entry(described):
                 recognition.add(described, _DESCRIBED, "described")
         self._check_uses(query, chains, recognition)
+        if not is_settled:
+            self._values_of_nothing(query, recognition)
         self._messages.explain(query, recognition)
         old = next((match.id for match in recognition.matches if match.sure >= _SURE), "")
         if name := name_on_an_old_node(old):
@@ -221,7 +224,7 @@ class Recogniser:
         return next((plain_path(removed.targets[0]) for removed in gone if removed.targets), "")
 
     def _removed_values(self, text: str, recognition: Recognition) -> None:
-        """Adds enum items that a property in the query has only in other versions, and such that no other has now."""
+        """Adds enum items that a property in the query has only in other versions."""
         for value in self._enum_values.values(text):
             if _is_told(value, recognition):
                 continue
@@ -229,10 +232,15 @@ class Recogniser:
                 symbol = self._reader.symbol(match.id)
                 if symbol and (removed := self._old.value(symbol, value)):
                     recognition.add_removed(removed)
-            if not _is_told(value, recognition) and "_" in value and not self._reader.enum_owners(key(value)):
-                for removed in self._removed.spelled(value):
-                    if removed.path.endswith(f":{value}"):
-                        recognition.add_removed(removed)
+
+    def _values_of_nothing(self, query: str, recognition: Recognition) -> None:
+        """Adds enum items that nothing has now, where no use in the query has told of what they were removed."""
+        for value in self._enum_values.values(without_callers_names(without_wording(query))):
+            if _is_told(value, recognition) or "_" not in value or self._reader.enum_owners(key(value)):
+                continue
+            for removed in self._removed.spelled(value):
+                if removed.path.endswith(f":{value}"):
+                    recognition.add_removed(removed)
 
     def _explain_removed(self, recognition: Recognition) -> None:
         """Adds what took the place of the removed symbols; the owner where nothing did."""

@@ -71,14 +71,8 @@ def stopping(struct, prop, side, kept):
     """The other number of an instance that decides where one stops: the stop goes as far as it does; "" for none."""
     for other in struct.bl_rna.properties:
         name = other.identifier
-        is_old = getattr(other, "is_deprecated", False)
-        if (
-            is_old
-            or other.type != prop.type
-            or other.is_array
-            or other == prop
-            or struct.is_property_readonly(name)
-        ):
+        is_alike = other.type == prop.type and not other.is_array and other != prop
+        if not is_alike or getattr(other, "is_deprecated", False) or struct.is_property_readonly(name):
             continue
         before, own = getattr(struct, name), getattr(struct, prop.identifier)
         # Towards the number itself, so that it need not give way.

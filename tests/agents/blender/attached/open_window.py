@@ -133,6 +133,12 @@ class OpenWindow:
         assert becomes(lambda: not acts.exists() or self.process.poll() is not None)
         acts.unlink(missing_ok=True)
 
+    def value_of(self, expression: str, imports: str = "bpy") -> str:
+        """What an expression gives in this Blender, as Python writes it."""
+        told = self.root / "value.txt"
+        self.choose(f"import {imports}; open({str(told)!r}, 'w').write(repr({expression}))")
+        return told.read_text()
+
     def require_numpy(self) -> None:
         """Skips the test, with the reason, where this Blender's Python has no numpy."""
         told = self.root / "numpy.txt"

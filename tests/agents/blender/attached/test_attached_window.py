@@ -262,10 +262,8 @@ async def test_harmful_code_never_arrives(client: Client, code: str, said: str) 
 async def test_no_thread_of_ours_runs_beside_blenders_operators(client: Client, window: OpenWindow) -> None:
     """While an operator runs, Blender looks into Python's dictionaries without keeping other threads out."""
     await state(client)
-    told = window.root / "threads.txt"
     names = "[thread.name for thread in threading.enumerate()]"
-    window.choose(f"import threading; open({str(told)!r}, 'w').write(repr({names}))")
-    assert told.read_text() == "['MainThread']"
+    assert window.value_of(names, "threading") == "['MainThread']"
 
 
 async def test_code_leaves_the_users_python_whole(client: Client, window: OpenWindow) -> None:
@@ -371,12 +369,9 @@ async def test_of_a_large_scene_nothing_unrehearsed_arrives(
 
 async def test_never_undoes_the_users_own_work(client: Client, window: OpenWindow) -> None:
     await build(client, "Theirs", 2)
-    told = window.root / "theirs.txt"
-    look = f"open({str(told)!r}, 'w').write(repr([(*o.location, o.select_get()) for o in bpy.context.scene.objects]))"
 
     def seen() -> str:
-        window.choose(look)
-        return told.read_text()
+        return window.value_of("[(*one.location, one.select_get()) for one in bpy.context.scene.objects]")
 
     before = seen()
     window.act("mousemove", "500", "380", "key", "a")
@@ -398,21 +393,19 @@ async def test_never_undoes_the_users_own_work(client: Client, window: OpenWindo
 
 async def test_works_while_the_user_plays_the_animation(client: Client, window: OpenWindow) -> None:
     before = await digests(client)
-    told = window.root / "plays.txt"
-    look = f"open({str(told)!r}, 'w').write(repr(bpy.context.screen.is_animation_playing))"
+    plays = "bpy.context.screen.is_animation_playing"
     window.act("mousemove", "500", "380", "key", "space")
-    assert becomes(lambda: window.choose(look) is None and told.read_text() == "True")
+    assert becomes(lambda: window.value_of(plays) == "True")
     await build(client, "Added as it plays", 1)
     undone = await use(client, "blender_undo")
     assert "The scene is as it was before them" in text(undone)
-    window.choose(look)
-    assert told.read_text() == "True", "looking and undoing stopped it"
+    assert window.value_of(plays) == "True", "looking and undoing stopped it"
     at = (await state(client))["frame"]
     deadline = time.monotonic() + 30
     while (await state(client))["frame"] == at:
         assert time.monotonic() < deadline, "it plays no more"
     window.act("key", "space")
-    assert becomes(lambda: window.choose(look) is None and told.read_text() == "False")
+    assert becomes(lambda: window.value_of(plays) == "False")
     window.choose("bpy.context.scene.frame_set(1)")
     assert await digests(client) == before
 
