@@ -30,8 +30,9 @@ class EmptyWays:
         self._reached = {path.removeprefix(TYPES): expression for path, expression in reached.items()}
         self._bases: dict[str, str] = {}
         self._below: dict[str, list[str]] = defaultdict(list)
-        # (name, class that it leads to) → properties
+        # (name, class that it leads to, or of the collection itself) → properties
         self._leading: dict[tuple[str, str], list[Symbol]] = defaultdict(list)
+        self._holding: dict[tuple[str, str], list[Symbol]] = defaultdict(list)
         for symbol in symbols:
             if symbol.kind == "class" and symbol.base:
                 name, base = (path.removeprefix(TYPES) for path in (symbol.path, symbol.base))
@@ -40,10 +41,12 @@ class EmptyWays:
             elif symbol.kind == "property" and symbol.target:
                 target = NARROWER.get(symbol.path, symbol.target)
                 self._leading[symbol.name, target].append(symbol)
+                if symbol.collection:
+                    self._holding[symbol.name, symbol.collection].append(symbol)
 
     def last_empty(self, cls: str) -> str:
         """The path of the last pointer on the way to a class, given by its name, that is None on a new thing, or of the
-        collection whose first element is taken and that is empty there; empty for none.
+        collection whose first or active element is taken and that is empty there; empty for none.
         """
         way = _WAY.fullmatch(self._reached.get(cls, ""))
         if way is None:
@@ -57,12 +60,25 @@ class EmptyWays:
             owner = step.owner.removeprefix(TYPES)
             if self._reached.get(owner) == before:
                 is_empty = key in _FIRST and (empty_when_new(step) or not _EMPTY.isdisjoint(step.flags))
-                return step.path if is_empty else self.last_empty(owner)
+                return step.path if is_empty else self._empty_collection(owner) or self.last_empty(owner)
         if is_far and len(steps) == 1:
             below = self._descendants(steps[0].owner.removeprefix(TYPES))
             owner = next((each for each in below if self._reached.get(each) == before), "")
             return self.last_empty(owner) if owner else ""
         return ""
+
+    def _empty_collection(self, cls: str) -> str:
+        """The path of the property which has a collection of this class that is empty on a new thing; empty for none:
+        ``vertex_groups`` of ``vertex_groups.active``.
+        """
+        way = _WAY.fullmatch(self._reached.get(cls, ""))
+        if way is None:
+            return ""
+        holding = self._holding.get((way["name"], cls), ())
+        owned = (
+            each for each in holding if self._reached.get(each.owner.removeprefix(TYPES)) == way["before"]
+        )
+        return next((each.path for each in owned if EMPTY in each.flags), "")
 
     def _descendants(self, cls: str) -> Iterator[str]:
         for each in self._below.get(cls, ()):

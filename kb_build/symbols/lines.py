@@ -299,7 +299,7 @@ def _empty_text(symbol: Symbol, empty: NewValue) -> str:
     """Of a pointer that is None on new things: on which ones, and what fills it."""
     text = f"`None` on a new {_labels(empty.made or (symbol.owner.rpartition('.')[2],))}"
     if others := symbol.flagged(FILLED_ON):
-        text += f" (but not on a new {_labels(others)})"
+        text += f" (but a new {_labels(others)} has one)"
     return "; ".join(filter(None, (text, _made_by(symbol))))
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import NODE, TYPES
 from kb_build.symbols.flags import alike_nodes, empty_when_new, fillers, new_subscript
 from kb_build.symbols.lines import default_text, of_evaluated
 from kb_build.symbols.records import (
+    EMPTY,
     EMPTY_AT_START,
     EVALUATED,
     FILLED_AT_START,
@@ -25,6 +27,8 @@ if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
 
+_OPTIONAL = re.compile(r"(, )?\*, .*\)")
+_ADDING = ("new", "add", "link")  # the functions of collections that do so, the likeliest first
 _NONE_IN_CONTEXT = {
     WITHOUT_ACTIVE: "`None` where no object is active",
     WITHOUT_AREA: "`None` outside the areas of windows, as in a Blender without a window",
@@ -137,9 +141,18 @@ def _empty_text(pointer: Symbol, reader: BaseReader) -> str:
         return f"`{pointer.name}` is {default_text(pointer)}: assign `{tree}`"
     if EMPTY_AT_START in pointer.flags:
         return f"`{pointer.name}` is empty in the start-up file"
+    if EMPTY in pointer.flags and (call := _adding(pointer, reader)):
+        return f"`{pointer.name}` is {default_text(pointer)}: add to it by `{call}`"
     empty = empty_when_new(pointer)
     is_there = FILLED_AT_START in pointer.flags or (empty is not None and bool(empty.made))
     return "" if is_there and not fillers(pointer) else f"`{pointer.name}` is {default_text(pointer)}"
+
+
+def _adding(collection: Symbol, reader: BaseReader) -> str:
+    """The shortest call that adds an element to a collection; empty where it has no function for that."""
+    makers = (reader.entry(f"{TYPES}{collection.collection}.{name}") for name in _ADDING)
+    maker = next(filter(None, makers), None) if collection.collection else None
+    return f"{collection.name}.{_OPTIONAL.sub(')', maker.head.strip('`'))}" if maker else ""
 
 
 def _assigned(symbol: Symbol, reader: BaseReader) -> str:

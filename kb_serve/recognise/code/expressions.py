@@ -182,8 +182,9 @@ class Expressions:
                 self._old_name(old, later, recognition)
                 continue
             broken = likeliest_broken(chain, readings)
-            # ``wm.append`` is an operator rather than whatever else can be appended to.
-            told = readings and not (readings[0].fit < LIKELY and self._operator(chain))
+            # ``wm.append`` is an operator rather than whatever else can be appended to, and so is ``render.render``,
+            # though some classes are called a little like it.
+            told = readings and not (readings[0].fit < CLEAR and self._operator(chain))
             if told and self._trusted(chain, readings[0], broken) and not self._misspelt(chain, readings[0]):
                 self._reading(chain, readings, later, recognition)
                 is_doubted = broken and (

@@ -166,7 +166,7 @@ def test_items_that_no_instance_takes_are_not_listed() -> None:
         ({"type": "pointer", "new_values": (NewValue(None),)}, "`None` on a new A"),
         ({"type": "pointer", "new_values": (NewValue(None, ("empty object",)),)}, "`None` on a new empty object"),
         ({"type": "pointer", "new_values": (NewValue(None),), "flags": ("filled-on:a b", "filled-by:a.b() then c()")},
-         "`None` on a new A (but not on a new a b); made by `a.b()`, then `c()`"),
+         "`None` on a new A (but a new a b has one); made by `a.b()`, then `c()`"),
     ],
 )  # fmt: skip
 def test_a_default_tells_whose_it_is(fields: dict[str, object], expected: str) -> None:

@@ -200,7 +200,11 @@ def test_a_way_to_a_thing_says_what_is_none_on_it(kb: KnowledgeBase) -> None:
 @pytest.mark.parametrize(
     ("path", "told"),
     [
-        ("CameraBackgroundImage.alpha", "; `background_images` is empty (new Camera)"),
+        (
+            "CameraBackgroundImage.alpha",
+            "; `background_images` is empty (new Camera): add to it by `background_images.new()`",
+        ),
+        ("VertexGroup.index", "; `vertex_groups` is empty (new Object): add to it by `vertex_groups.new()`"),
         ("MaterialGPencilStyle.fill_color", "; made by `bpy.data.materials.create_gpencil_data(material)`"),
         ("ColorStrip.color", "; `sequence_editor` is `None` on a new Scene; made by"),
         ("WoodTexture.noise_basis", "reached as `bpy.data.textures[0].noise_basis`"),
@@ -472,7 +476,13 @@ def test_a_member_of_a_node_that_no_tree_takes_says_so(kb: KnowledgeBase) -> Non
         ("BoidState.volume", "`boids` is `None` on a new ParticleSettings; made by"),
         (
             "AnnotationLayer.color",
-            "`annotation` is `None` on a new Scene; `layers` is empty (new Annotation)",
+            "`annotation` is `None` on a new Scene; `layers` is empty (new Annotation): add to it by "
+            "`layers.new(name)`",
+        ),
+        (
+            "GreasePencilDrawing.type",
+            "`layers` is empty (new GreasePencil): add to it by `layers.new(name)`; "
+            "`frames` is empty (new GreasePencilLayer): add to it by `frames.new(frame_number)`",
         ),
         ("MovieClip.display_aspect", "`active_clip` is `None` on a new Scene"),
     ],
