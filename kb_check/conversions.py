@@ -20,6 +20,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import OF_OBJECT
 from kb_build.flow.types import (
     NONE,
     Collection,
@@ -34,7 +35,7 @@ from kb_build.flow.types import (
 )
 from kb_build.symbols.api_names import ID, STRUCT
 from kb_build.symbols.api_names import TYPES as T
-from kb_build.symbols.object_data import OBJECT_DATA
+from kb_build.symbols.object_data import OBJECT_DATA, OF_EMPTIES
 from kb_check.documented import (
     LENGTHS,
     documented_misfit,
@@ -44,7 +45,6 @@ from kb_check.documented import (
     none_misfit,
 )
 from kb_check.literals import items, number, written
-from kb_check.made_here import alias
 from kb_check.misfits import Misfit, describe, shown
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ if TYPE_CHECKING:
 _OBJECTS_DATA = f"{T}Object.data"
 _MADE_OF = f"{T}BlendDataObjects.new(object_data)"
 _DATA_OF_NEW = tuple(f"{T}{name}" for name in OBJECT_DATA.values())
-_DATA = (*_DATA_OF_NEW, f"{T}Image")  # an empty shows images
+_DATA = (*_DATA_OF_NEW, f"{T}{OF_EMPTIES}")
 # Where there is the newer one, objects have that only.
 _OLDER, _NEWER = f"{T}GreasePencil", f"{T}GreasePencilv3"
 _NUMBERS = frozenset({"bool", "int", "float"})
@@ -104,7 +104,7 @@ def _scalar_misfit(  # noqa: PLR0911 - one return a type
     if not given:
         return None
     if taker.kind == "pointer":
-        if _is_other_data(script, taker, node, kind):
+        if _is_other_data(script, taker, kind):
             return Misfit(_takes(taker), "the data of an object")
         return _pointer_misfit(script, taker, kind, given)
     if isinstance(kind, Plain):
@@ -121,10 +121,9 @@ def _scalar_misfit(  # noqa: PLR0911 - one return a type
     return Misfit(_takes(taker), given)
 
 
-def _is_other_data(script: Script, taker: Taker, node: ast.expr, kind: Type) -> bool:
+def _is_other_data(script: Script, taker: Taker, kind: Type) -> bool:
     """Whether a value is an object's data, declared as any data-block, where none of those that objects have fits."""
-    row = script.analysis.resolutions.get(alias(script, node))
-    if row is None or row.symbols != (_OBJECTS_DATA,) or not row.sure or row.missing or kind != Instance(ID):
+    if not isinstance(kind, Instance) or kind.trait(OF_OBJECT) is None:
         return False
     api, target = script.api, taker.target
     related = any(is_related(script, cls, target) for cls in _DATA)

@@ -453,7 +453,7 @@ def _constructor(member: Member) -> Member:
 def _called_as_constructed(parsed: Docstring) -> Docstring:
     """The docstring of a class with the call of its constructor, if it has none of its own."""
     constructor = next((member.docstring for member in parsed.members if member.name == _INIT), None)
-    if constructor and not parsed.signature:
+    if constructor and "(" not in parsed.signature:  # which may be the class's name alone
         return replace(parsed, signature=constructor.signature, parameters=constructor.parameters)
     return parsed
 

@@ -16,6 +16,7 @@ from kb_build.flow.facts import (
     LAYERS,
     LAYERS_OF,
     NARROWER,
+    OF_OBJECT,
     OF_OPERATOR,
     OPERATOR_PROPERTIES,
     SAME_CLASS,
@@ -44,10 +45,10 @@ from kb_build.flow.types import (
     members,
     union,
 )
-from kb_build.symbols.api_names import COLLECTION, GROUPS, OPERATORS, STRUCT
+from kb_build.symbols.api_names import COLLECTION, GROUPS, ID, OBJECT, OPERATORS, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.math_classes import math_class
-from kb_build.symbols.object_data import data_class
+from kb_build.symbols.object_data import OBJECT_DATA, OF_EMPTIES, data_class
 from kb_build.symbols.paths import argument_of, is_socket, plain_path
 from kb_build.symbols.python_values import is_new_list
 
@@ -58,6 +59,7 @@ if TYPE_CHECKING:
     from kb_build.symbols.records import Parameter, Symbol
 
 ARRAY = "bpy.types.bpy_prop_array"
+_DATA = f"{OBJECT}.data"
 _ROOTS = {"bpy.data": f"{T}BlendData", "bpy.context": f"{T}Context"}
 _SCALARS: dict[str, Type] = {"boolean": BOOL, "int": INT, "float": FLOAT, "string": STR}
 MENU_SOCKET = f"{T}NodeSocketMenu"
@@ -235,6 +237,16 @@ class Api:
                 self._below[key] = found
         return found
 
+    def below_as_data(self, name: str) -> tuple[tuple[str, Member], ...]:
+        """The classes of objects' data, and those around them, that have a member: (class, member)."""
+        names = [data_class(kind, lambda each: self.is_class(T + each)) for kind in OBJECT_DATA]
+        data = [T + name for name in (*names, OF_EMPTIES)]
+
+        def is_of_data(cls: str) -> bool:
+            return any(self.descends(cls, each) or self.descends(each, cls) for each in data)
+
+        return tuple((cls, member) for cls, member in self.below(ID, name) if is_of_data(cls))
+
     def had(self, cls: str, name: str) -> bool:
         """Whether a class had, or gets, a member in another Blender that it lacks in this one; "" has modules."""
         return self._former is not None and self._former.had(cls, name)
@@ -271,6 +283,8 @@ class Api:
             if not symbol.collection and self.descends(element.cls, f"{T}PropertyGroup"):
                 container = GROUPS
             return Collection(element, container, path, UNKNOWN)
+        if path == _DATA:
+            return Instance(self._target(symbol), ((OF_OBJECT, Instance(OBJECT)),))
         if symbol.type == "pointer" or symbol.target:
             return Instance(self._target(symbol))
         return self._value_type(symbol)

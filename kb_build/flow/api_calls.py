@@ -34,6 +34,7 @@ from kb_build.flow.types import (
     Mapping,
     Operator,
     Sequence,
+    Tuple,
     Type,
     instance_of,
     join,
@@ -45,6 +46,7 @@ from kb_build.flow.types import (
 )
 from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.math_classes import math_class_of
 
 if TYPE_CHECKING:
     from kb_build.flow.read_calls import Keywords, ReadCall
@@ -65,6 +67,7 @@ _PROPERTIES: dict[str, Type] = {
     "FloatVectorProperty": Sequence("array", FLOAT), "IntVectorProperty": Sequence("array", INT),
     "BoolVectorProperty": Sequence("array", BOOL),
 }  # fmt: skip
+_USUAL_VECTOR = (3,)  # the size of one that is declared without
 _CONVERTING = "bpy.ops.object.convert"
 _KEY = f"{T}KeyMapItem"
 _OPERATOR_RESULT = Sequence("set", STR)
@@ -276,7 +279,21 @@ class ApiCalls(ScriptCalls):
             if name == "PointerProperty" or element is UNKNOWN:
                 return element
             return Collection(element, "bpy.types.bpy_prop_collection_idprop", "", UNKNOWN)
+        if name == "FloatVectorProperty" and "subtype" in keywords:
+            return self._vector(keywords)
         return _PROPERTIES.get(name, UNKNOWN)
+
+    def _vector(self, keywords: Keywords) -> Type:
+        """The value of a vector that is declared with a subtype: a Quaternion of four numbers of a rotation."""
+        subtype, size = literal_text(keywords["subtype"]), keywords.get("size")
+        numbers = [
+            literal(each) for each in (size.items if isinstance(size, Tuple) else (size,) if size else ())
+        ]
+        array = tuple(number for number in numbers if isinstance(number, int)) if numbers else _USUAL_VECTOR
+        if subtype is None or len(array) < len(numbers):
+            return UNKNOWN
+        math = math_class_of(subtype, array)
+        return Instance(math) if math else _PROPERTIES["FloatVectorProperty"]
 
     def _bmesh_result(self) -> Type:
         """What an operator of bmesh returns: lists by name."""

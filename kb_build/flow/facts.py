@@ -90,6 +90,8 @@ OPEN_CLASSES = (
 )  # fmt: skip
 # What a button, or a key, calls an operator with. The trait names the operator, where a script does.
 OPERATOR_PROPERTIES, OF_OPERATOR = "bpy.types.OperatorProperties", "operator"
+# The trait of what is read as an object's data: one of the classes of such data, whatever else is an ID.
+OF_OBJECT = "of an object"
 # Classes that scripts derive their own from, which a value declared so may be.
 DERIVED_BY_SCRIPTS = frozenset(
     {

@@ -16,6 +16,7 @@ from kb_build.flow.facts import (
     LAYER_ITEM,
     NODES_THAT_KEEP_NAMES,
     NODES_WITH_SOCKETS_OF_THEIR_OWN,
+    OF_OBJECT,
     OF_OPERATOR,
     OF_STRUCT_SEQUENCES,
     OPEN_CLASSES,
@@ -141,7 +142,8 @@ class Members(Core):
         if isinstance(operator := kind.trait(OF_OPERATOR), Operator):
             self._of_button(operator, name, found)
             return
-        if below := self.api.below(kind.cls, name):
+        is_data = kind.trait(OF_OBJECT) is not None
+        if below := self.api.below_as_data(name) if is_data else self.api.below(kind.cls, name):
             found.possible += [member.symbol.path for _, member in below]
             kinds = [
                 self._held(member.type, Instance(cls), name) for cls, member in below[: MOST_MEMBERS + 1]

@@ -15,6 +15,7 @@ OBJECT_DATA = {
     "POINTCLOUD": "PointCloud", "VOLUME": "Volume",
 }  # fmt: skip
 
+OF_EMPTIES = "Image"  # the class of what an empty shows
 # A class that some versions call otherwise: name → (other name, a class that tells that it means another thing yet).
 # Grease Pencil's data is GreasePencilv3 from 4.3 to 4.5; before, GreasePencil is the older kind, with GPencilLayers.
 _RENAMED = {"GreasePencilv3": ("GreasePencil", "GPencilLayer")}

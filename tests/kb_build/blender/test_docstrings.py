@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from textwrap import indent
 from typing import TYPE_CHECKING
 
 import pytest
@@ -312,6 +313,8 @@ def test_a_class_is_called_as_its_constructor_is() -> None:
     assert parsed.signature == "__init__(a=1, b=2.5)"
     assert [parameter.name for parameter in parsed.parameters] == ["a", "b"]
     assert parse_docstring(".. class:: Vector(seq)\n\n" + CLASS).signature == "Vector(seq)"
+    named_alone = ".. class:: Thing\n\n" + indent(CLASS, "   ")
+    assert parse_docstring(named_alone).signature == "__init__(a=1, b=2.5)"
 
 
 @pytest.mark.parametrize(

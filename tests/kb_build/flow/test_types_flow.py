@@ -62,6 +62,8 @@ def test_what_an_expression_is(api: Api, code: str, cls: str) -> None:
         ("ob.constraints.new('IK')", "KinematicConstraint"),
         ("ob.constraints.new(type='TRACK_TO')", "TrackToConstraint"),
         ("bpy.data.lights.new('x', type='AREA')", "AreaLight"),
+        ("ob.data.layers.active", "GreasePencilLayer"),
+        ("ob.data.colorspace_settings", "ColorManagedInputColorspaceSettings"),
         ("bpy.data.curves.new('x', 'FONT')", "TextCurve"),
         ("bpy.data.textures.new('x', 'CLOUDS')", "CloudsTexture"),
         ("bpy.data.objects.new('x', bpy.data.lights.new('x', 'SUN')).data", "SunLight"),

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 import pytest
 from told_by_blender import told_by_blender
 
-from kb_build.symbols.math_classes import math_class
+from kb_build.symbols.math_classes import math_class, math_class_of
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from kb_serve.knowledge_base import KnowledgeBase
 
 _EXPRESSIONS = {
@@ -50,3 +52,34 @@ def test_arrays_are_what_blender_makes_of_them(
     assert symbol is not None
     name = given_by_blender[path]
     assert math_class(symbol) == ("" if name == "bpy_prop_array" else f"mathutils.{name}")
+
+
+# Subtype and size of a vector that a script declares.
+_DECLARED = [
+    ("QUATERNION", 4), ("QUATERNION", 3), ("EULER", 3), ("EULER", 4), ("XYZ", 3), ("XYZ", 2), ("XYZ", 5), ("NONE", 3),
+    ("TRANSLATION", 3), ("AXISANGLE", 4), ("COLOR", 3), ("COLOR", 4), ("COLOR_GAMMA", 3), ("MATRIX", 16),
+    ("MATRIX", 9), ("MATRIX", 12), ("MATRIX", (4, 4)), ("MATRIX", (2, 3)), ("XYZ", (3, 3)),
+]  # fmt: skip
+_OF_DECLARED = """
+import bpy, json, sys
+with open(sys.argv[-1]) as file:
+    given = json.load(file)
+declared = {
+    f"n{at}": bpy.props.FloatVectorProperty(subtype=subtype, size=size)
+    for at, (subtype, size) in enumerate(given)
+}
+group = type("Group", (bpy.types.PropertyGroup,), {"__annotations__": declared})
+bpy.utils.register_class(group)
+bpy.types.Scene.group = bpy.props.PointerProperty(type=group)
+with open(sys.argv[-1], "w") as file:
+    json.dump([type(getattr(bpy.context.scene.group, name)).__name__ for name in declared], file)
+"""
+
+
+def test_what_a_script_declares_is_what_blender_makes_of_it(tmp_path: Path) -> None:
+    made = told_by_blender(_OF_DECLARED, tmp_path, _DECLARED)
+    told = [
+        math_class_of(subtype, size if isinstance(size, tuple) else (size,)).rpartition(".")[2]
+        for subtype, size in _DECLARED
+    ]
+    assert told == ["" if name == "bpy_prop_array" else name for name in made]

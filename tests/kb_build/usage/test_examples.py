@@ -249,11 +249,20 @@ def test_a_decorator_is_shown_above_a_function(base: Path) -> None:
 
 
 def test_a_call_that_only_some_classes_below_have_shows_none_of_them(base: Path) -> None:
-    code = "import bpy\ndata = bpy.context.object.data\ndata.update()\nmesh = bpy.data.meshes[0]\nmesh.update()\n"
+    driver = "bpy.context.object.animation_data.drivers[0].driver"
+    code = f"import bpy\ndata = {driver}.variables[0].targets[0].id\ndata.update()\nbpy.data.meshes[0].update()\n"
     with closing(BaseSymbols(base)) as symbols:
         found = uses_in(code, "a/script.py", Api(symbols), (5, 1, 0))
     assert "bpy.types.NodeTree.update" not in found
     assert found["bpy.types.Mesh.update"].count == 1
+
+
+def test_what_an_objects_data_has_is_no_use_of_what_no_object_has(base: Path) -> None:
+    code = "import bpy\nbpy.context.object.data.layers.active\n"
+    with closing(BaseSymbols(base)) as symbols:
+        found = uses_in(code, "a/script.py", Api(symbols), (5, 1, 0))
+    assert "bpy.types.CacheFileLayers.active" not in found
+    assert found["bpy.types.GreasePencilv3Layers.active"].count == 1
 
 
 def test_a_call_that_one_class_below_has_is_a_use_of_it(base: Path) -> None:

@@ -37,6 +37,7 @@ class Settings(bpy.types.PropertyGroup):
     pair: bpy.props.IntVectorProperty(size=2)
     flags: bpy.props.BoolVectorProperty(size=3)
     matrix: bpy.props.FloatVectorProperty(size=(4, 4), subtype="MATRIX")
+    turn: bpy.props.FloatVectorProperty(size=4, subtype="QUATERNION")
     target: bpy.props.PointerProperty(type=bpy.types.Object)
     total: bpy.props.IntProperty(get=lambda self: 1)
     kept: bpy.props.IntProperty(get=lambda self: 1, set=lambda self, value: None)
@@ -92,6 +93,10 @@ _LINES: list[str] = [
     "s.flags = (True, False, True)",
     "s.flags = (1, 0, 1)",
     "s.matrix = [[1.0] * 4] * 4",
+    "s.turn.to_euler()",
+    "s.turn.to_axis()",
+    "ob.matrix_world.to_3x3().rotate(s.turn)",
+    "ob.matrix_world.to_3x3().rotate(s.offset)",
     "s.target = ob",
     "s.target = None",
     "s.target = bpy.data.meshes['Cube']",
