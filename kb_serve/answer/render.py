@@ -38,6 +38,7 @@ _BARE_DATA = (
     "This Blender has no class for the data of the object that it adds: nothing in them can be read or set."
 )
 _FEW_PARAMETERS = 8
+_CONSTRUCTOR = "__init__"  # called as the class itself is
 _MACHINERY = {
     "bl_rna_get_subclass",
     "bl_rna_get_subclass_py",
@@ -77,7 +78,7 @@ class MarkdownRenderer:
     reader: BaseReader
 
     def symbol(self, symbol: Symbol, asked: AskedOf = ASKED_NOTHING) -> Iterator[AnswerBlock]:
-        """A symbol: a class with a list of its members, an operator or function with its parameters.
+        """A symbol: a class with its members, an operator, function or class that scripts call with its parameters.
 
         What is ``asked`` of it comes before the rest, or alone.
         """
@@ -89,6 +90,9 @@ class MarkdownRenderer:
         )
         if symbol.kind == "class":
             members = list(self.reader.members(symbol.path).values())
+            if symbol.signature:  # what makes one takes what the class is called with
+                yield from arguments(symbol, asked)
+                members = [entry for entry in members if entry.name != _CONSTRUCTOR]
             title = f"Inputs and outputs{_once_paired(members)}"
             # A node is asked for what goes in and out; what follows the lists below may find no room.
             yield from _listed(title, [entry for entry in members if entry.kind == "socket"])

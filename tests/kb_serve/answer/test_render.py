@@ -500,3 +500,11 @@ def test_a_step_that_the_start_up_file_has_filled_is_not_called_empty(kb: Knowle
         line for line in kb.query(f"bpy.types.{path}").text.splitlines() if line.startswith("reached as")
     ]
     assert ";" not in line
+
+
+def test_a_class_that_scripts_call_tells_what_it_takes(kb: KnowledgeBase) -> None:
+    text = kb.query("gpu.types.GPUBatch", max_tokens=ALL).text
+    parameters, _, functions = text.partition("**Functions**")
+    assert "- `type` (enum, required)" in parameters
+    assert "one of 'POINTS', 'LINES', 'TRIS'" in parameters
+    assert "`__init__" not in functions
