@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from dataclasses import dataclass
 
 from kb_build.flow.types import FROM_VERSION, FromNames, FromVersion, Telling
@@ -14,13 +15,15 @@ class Doubts:
     ``chosen``: it may not be come to with every text that comes from elsewhere. ``members`` are names that Blender was
     asked for, doubted whatever has them. ``chains`` are names and chains (``context.object``), by their text, of which
     the script has found that they lack a member, as those of another Blender do: what it reads from them is not for
-    this one.
+    this one. ``unlisted`` are texts of which the script has found that something does not list them: what it gives to
+    an enumeration that lists them here is for another Blender.
     """
 
     everything: bool = False
     chosen: bool = False
     members: frozenset[str] = frozenset()
     chains: frozenset[str] = frozenset()
+    unlisted: frozenset[str] = frozenset()
 
     def __or__(self, other: Doubts) -> Doubts:
         """What the one or the other doubts."""
@@ -31,6 +34,7 @@ class Doubts:
             self.chosen or other.chosen,
             self.members | other.members,
             self.chains | other.chains,
+            self.unlisted | other.unlisted,
         )
 
     def __and__(self, other: Doubts) -> Doubts:
@@ -42,6 +46,7 @@ class Doubts:
             self.chosen and other.chosen,
             self.members & other.members,
             self.chains & other.chains,
+            self.unlisted & other.unlisted,
         )
 
     def has_member(self, name: str) -> bool:
@@ -52,6 +57,16 @@ class Doubts:
     def anywhere(self) -> Doubts:
         """What is doubted whatever the names of this place hold, and whatever texts come to it."""
         return Doubts(self.everything, members=self.members)
+
+
+def without(test: ast.expr, *, holds: bool) -> Doubts:
+    """What is doubted where a condition, ``"A" in names``, tells that something does not list a text."""
+    match test:
+        case ast.Compare(left=ast.Constant(value=str(text)), ops=[ast.In() | ast.NotIn() as operator]):
+            is_listed = isinstance(operator, ast.In) is holds
+            return NO_DOUBTS if is_listed else Doubts(unlisted=frozenset({text}))
+        case _:
+            return NO_DOUBTS
 
 
 NO_DOUBTS = Doubts()

@@ -8,7 +8,7 @@ import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
-from kb_build.flow.doubts import NO_DOUBTS
+from kb_build.flow.doubts import NO_DOUBTS, without
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE, SUMS
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import chain_text, item_text
@@ -46,7 +46,7 @@ from kb_build.symbols.paths import argument_of, plain_path
 from kb_build.symbols.unlisted import FEWEST_VALUES, MORE_VALUES, STAND_INS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable, Iterator
     from collections.abc import Sequence as Rows
 
     from kb_build.flow.types import ResolutionKind
@@ -313,10 +313,13 @@ class Expressions(Members):
         return BOOL if there is None else Plain("bool", there == isinstance(operator, ast.In), FROM_VERSION)
 
     def _is_listed(self, name: str, node: ast.expr) -> bool | None:
-        """Whether ``bpy.types.Scene.bl_rna.properties`` or ``dir(bpy.types)`` lists a name; None for what is not sure.
+        """Whether ``bpy.types.Scene.bl_rna.properties``, ``dir(bpy.types)`` or a node's sockets list a name; None for
+        what is not sure.
 
         ``node`` was evaluated.
         """
+        if self.has_socket(self.here.types.get(node, UNKNOWN), name):
+            return True
         match node:
             case ast.Attribute(
                 attr="properties" | "functions", value=ast.Attribute(attr="bl_rna", value=owner)
@@ -450,10 +453,25 @@ class Expressions(Members):
         if not source:
             return
         # Those that were not reached are of a branch for other versions.
-        for constant in filter(self.here.types.__contains__, constants(node)):
+        for constant in filter(self.here.types.__contains__, self._given(node, source)):
             self.resolve_value(constant, constant.value, source, use=use)
         if use == "value" and isinstance(node, (ast.Name, ast.Subscript)):
             self.check_carried(node, source)
+
+    def _given(self, node: ast.expr, sources: tuple[str, ...]) -> Iterator[ast.Constant]:
+        """The text literals that an expression gives to enumerations, but for those that it gives to another Blender's:
+        ``"A" if "A" in listed else "B"``, where this one's have ``A``.
+        """
+        if not isinstance(node, ast.IfExp):
+            yield from constants(node)
+            return
+        for holds, part in ((True, node.body), (False, node.orelse)):
+            if not self.is_listed_here(without(node.test, holds=holds).unlisted, sources):
+                yield from self._given(part, sources)
+
+    def is_listed_here(self, texts: frozenset[str], paths: Iterable[str]) -> bool:
+        """Whether this Blender's enumerations have one of some texts."""
+        return bool(texts) and any(not texts.isdisjoint(self.api.values_of(path)) for path in paths)
 
     def check_carried(self, node: ast.expr, sources: tuple[str, ...]) -> None:
         """Records a text that a name or an item holds, where the enumeration that it is given to lacks it."""
@@ -544,7 +562,8 @@ class Expressions(Members):
         if only_lacking:
             self.here.resolutions.pop(node, None)
         if (having and not only_lacking) or (lacking and not having and not unsure):
-            self.resolve(node, use, value, having, lacking)
+            is_for_another = self.is_listed_here(self.here.scope.state.doubted.unlisted, lacking)
+            self.resolve(node, use, value, having, lacking, guarded=is_for_another)
 
     _evaluators: ClassVar[dict[type, Callable[..., Type]]] = {
         ast.Name: _name,

@@ -9,7 +9,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.doubts import CHOSEN, EVERYTHING, NO_DOUBTS, Doubts, as_doubts, as_source
+from kb_build.flow.doubts import CHOSEN, EVERYTHING, NO_DOUBTS, Doubts, as_doubts, as_source, without
 from kb_build.flow.expressions import Expressions, is_decided
 from kb_build.flow.trees import children, walk
 from kb_build.flow.type_parts import telling, tells
@@ -42,7 +42,8 @@ class Guards(Expressions):
         """
         kind = self.here.types.get(test, UNKNOWN)
         if not is_decided(kind):
-            self.doubt_here(self.asked(test, chooses=True) if asked is None else asked)
+            found = self.asked(test, chooses=True) if asked is None else asked
+            self.doubt_here(found | without(test, holds=holds))
         elif literal(kind) is not holds:
             self.doubt_here(EVERYTHING)
 
@@ -65,6 +66,8 @@ class Guards(Expressions):
             match part:
                 case ast.Name(id="TYPE_CHECKING") | ast.Attribute(attr="TYPE_CHECKING"):
                     found |= EVERYTHING  # what follows never runs: it may name what only stubs have
+                case ast.Attribute(value=ast.Attribute(attr="build_options")):
+                    found |= EVERYTHING  # what another build has
                 case ast.Name() if chooses and not found.chosen and self._may_choose(part):
                     found |= CHOSEN
                 case ast.Call():
@@ -72,7 +75,7 @@ class Guards(Expressions):
                     if self._calls_for_version(part):
                         found |= EVERYTHING
                 case ast.Compare(ops=[ast.In() | ast.NotIn()]):
-                    names.update(self._texts([part.left]))
+                    names.update(self._texts([part.left], of_any_form=True))
                 case _:
                     pass
             waiting += children(part)
@@ -106,11 +109,11 @@ class Guards(Expressions):
         names = frozenset(name for value in lacked for name in value.split("."))
         return FromNames(names) if names else None
 
-    def _texts(self, nodes: Iterable[ast.expr]) -> Iterator[str]:
+    def _texts(self, nodes: Iterable[ast.expr], *, of_any_form: bool = False) -> Iterator[str]:
         """The texts among expressions that may be names; of an operator's class, its module's and its own as well."""
         for node in nodes:
             text = literal_text(self.here.types.get(node, UNKNOWN))
-            if text is not None and text.isidentifier():
+            if text is not None and (of_any_form or text.isidentifier()):
                 yield text
                 module, of_class, operator = text.partition("_OT_")
                 if of_class:

@@ -7,7 +7,7 @@ from fnmatch import fnmatchcase
 from itertools import takewhile
 from typing import TYPE_CHECKING, ClassVar, Literal
 
-from kb_build.flow.api import ARRAY
+from kb_build.flow.api import ARRAY, operator_path
 from kb_build.flow.core import ANY, Core
 from kb_build.flow.facts import (
     DERIVED_BY_SCRIPTS,
@@ -53,7 +53,7 @@ from kb_build.flow.types import (
     union,
     without_none,
 )
-from kb_build.symbols.api_names import COLLECTION, GROUPS, STRUCT
+from kb_build.symbols.api_names import COLLECTION, GROUPS, SIDES, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.unlisted import SOMETIMES
 
@@ -68,6 +68,7 @@ _GROUP_METHODS = frozenset({"add", "remove", "clear", "move"})
 _PYTHON: dict[str, type] = {"str": str, "int": int, "float": float, "bool": bool, "bytes": bytes}
 # The last socket of nodes whose items scripts add: it makes room for each.
 _MOVING = "NodeSocketVirtual"
+_TYPES = T.removesuffix(".")
 _GROUP = f"{T}PropertyGroup"
 _VECTORS = frozenset({"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion"})
 
@@ -210,7 +211,10 @@ class Members(Core):
                 member = self.api.member(kind.cls, name)
                 return member is not None and member.symbol.kind != "context"
             case Module():
-                return self.api.member(kind.path, name) is not None
+                is_operators = (
+                    kind.path == _TYPES and self.api.symbols.symbol(operator_path(name)) is not None
+                )
+                return is_operators or self.api.member(kind.path, name) is not None
             case ClassObject():
                 member = self.api.member(kind.cls, name)
                 return member is not None and isinstance(member.type, Function)
@@ -220,6 +224,20 @@ class Members(Core):
                 return all(self.has(member, name) for member in kind.members)
             case _:
                 return False
+
+    def has_socket(self, kind: Type, name: str) -> bool:
+        """Whether a value is the sockets of a node's side, which surely has one of this name."""
+        if (
+            not isinstance(kind, Collection)
+            or not isinstance(owner := kind.owner, Instance)
+            or not owner.sure
+        ):
+            return False
+        side = kind.path.rpartition(".")[2]
+        if side not in SIDES or _has_sockets_of_its_own(owner.cls) or self.here.guessing:
+            return False
+        subscript = f'{side}["{name}"]'
+        return any(subscript in socket.subscripts for socket in self.api.sockets(owner.cls, side))
 
     def _declared_over(self, symbol: Symbol, cls: str, name: str) -> Type | None:
         """A property that the script gives to a class in the place of an inherited one."""
@@ -420,7 +438,7 @@ class Members(Core):
         """An item of a collection: its key may be a socket's, or the name that an item has by default."""
         text = literal_text(key)
         side = kind.path.rpartition(".")[2]
-        if side in {"inputs", "outputs"} and isinstance(kind.owner, Instance):
+        if side in SIDES and isinstance(kind.owner, Instance):
             found = self._socket(kind.owner, side, key, node)
             if found is not None:
                 return found

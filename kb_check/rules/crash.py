@@ -40,6 +40,7 @@ from kb_build.symbols.records import (
     ENDS_WITHOUT,
     UNSET_BY,
 )
+from kb_check.asked_for_none import tested_names
 from kb_check.calls import CallSite, calls
 from kb_check.emptied import EMPTYING, is_emptied_before
 from kb_check.findings import Edit, Finding, Fix
@@ -114,20 +115,10 @@ def _by_index(script: Script, value: ast.expr, index: str) -> Fix | None:
 def _got(script: Script, node: ast.expr) -> ast.Call | None:
     """The ``get`` of a collection, without a default, that an expression is; None where the script asks for it."""
     if isinstance(node, ast.Name):
-        values = bindings(script).get(node.id, []) if node.id not in _tested(script) else []
+        values = bindings(script).get(node.id, []) if node.id not in tested_names(script) else []
         node = values[0] if len(values) == 1 and values[0] else node
     is_got = isinstance(node, ast.Call) and len(node.args) == 1 and callee_path(script, node) == _GETTING
     return node if is_got and isinstance(node, ast.Call) else None
-
-
-@once_per_script
-def _tested(script: Script) -> frozenset[str]:
-    """The names that are part of some condition."""
-    conditions = [node.test for node in script.all(ast.If, ast.While, ast.IfExp, ast.Assert)]
-    conditions += script.all(ast.BoolOp, ast.Compare, ast.UnaryOp, ast.Match, ast.comprehension)
-    return frozenset(
-        name.id for condition in conditions for name in ast.walk(condition) if isinstance(name, ast.Name)
-    )
 
 
 def _left_out(script: Script, call: CallSite) -> Iterator[Finding]:

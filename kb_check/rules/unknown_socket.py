@@ -1,11 +1,12 @@
 """A socket that a node does not have, or does not find by what it is asked for.
 
 Sockets are asked for by the name that the node shows, or by identifier; a few nodes take names only. What the running
-Blender still takes by a former name is not a finding.
+Blender still takes by a former name is not a finding, nor is a `get` whose None the script is ready for.
 
 ```python
 principled = nodes.new("ShaderNodeBsdfPrincipled")
 principled.inputs["Specular"]  # reported since 4.0: Specular IOR Level
+principled.inputs.get("Specular") or principled.inputs.get("Specular IOR Level")  # of any Blender
 mix = nodes.new("ShaderNodeMix")
 mix.inputs["A_Color"]  # reported: an identifier; mix.inputs["A"] while colours are mixed, or mix.inputs[6]
 ```
@@ -36,6 +37,7 @@ from kb_build.flow.types import Instance, Resolution
 from kb_build.symbols.api_names import SIDES
 from kb_build.symbols.lines import subscripts_text
 from kb_build.symbols.records import NEVER_BY_IDENTIFIER, WHEN_PAIRED
+from kb_check.asked_for_none import is_ready_for_none
 from kb_check.findings import Finding
 from kb_check.group_inputs import makes_all_groups, named_inputs
 from kb_check.made_here import is_new
@@ -59,7 +61,9 @@ _RENAMED_IN = (4, 0)
 
 def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("item"):
-        if any(_still_works(script, node, row.value) for node in row.missing):
+        if any(_still_works(script, node, row.value) for node in row.missing) or is_ready_for_none(
+            script, row.node
+        ):
             continue
         node = row.missing[0]
         sockets = (socket for side in _sides(row) for socket in script.api.sockets(node, side))

@@ -1,0 +1,98 @@
+"""Scripts that ask what there is and are ready for each answer run in every Blender: nothing is wrong with them."""
+
+from __future__ import annotations
+
+from textwrap import dedent
+from typing import TYPE_CHECKING
+
+import pytest
+from other_versions import base_of, errors_in
+
+from kb_check.checker import Checker
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+INSTALLED = "5.1"
+VERSIONS = ["3.4", "4.2", "4.5", "5.0", INSTALLED, "5.2"]
+AROUND = """
+import bpy
+material = bpy.data.materials.new("x")
+material.use_nodes = True
+node = material.node_tree.nodes.new("ShaderNodeBsdfPrincipled")
+scene = bpy.context.scene
+engines = [item.identifier for item in scene.render.bl_rna.properties['engine'].enum_items]
+modifier = bpy.context.object.modifiers.new("b", 'BOOLEAN')
+solvers = modifier.bl_rna.properties['solver'].enum_items.keys()
+"""
+READY = {
+    "a socket or another": 'node.inputs.get("Specular") or node.inputs.get("Specular IOR Level")',
+    "a socket with another as default": 'node.inputs.get("Specular", node.inputs.get("Specular IOR Level"))',
+    "a socket that is asked for": """
+        socket = node.inputs.get("Emission Color")
+        if socket is None:
+            socket = node.inputs.get("Emission")
+        socket.default_value = (1, 1, 1, 1)
+    """,
+    "a socket where it is listed": """
+        if "Specular" in node.inputs:
+            node.inputs["Specular"].default_value = 1
+        else:
+            node.inputs["Specular IOR Level"].default_value = 1
+    """,
+    "a socket of several words where it is listed": """
+        if "Specular IOR Level" in node.inputs:
+            node.inputs["Specular IOR Level"].default_value = 1
+        else:
+            node.inputs["Specular"].default_value = 1
+    """,
+    "a value that a choice gives": """
+        modifier.solver = 'FLOAT' if 'FLOAT' in solvers else 'FAST'
+    """,
+    "a value that a name holds": """
+        engine = 'BLENDER_EEVEE' if 'BLENDER_EEVEE' in set(engines) else 'BLENDER_EEVEE_NEXT'
+        scene.render.engine = engine
+    """,
+    "a value behind a condition": """
+        if 'FLOAT' not in solvers:
+            modifier.solver = 'FAST'
+        else:
+            modifier.solver = 'FLOAT'
+    """,
+    "an operator whose class is asked for": """
+        if hasattr(bpy.types, "WM_OT_stl_export"):
+            export = bpy.ops.wm.stl_export
+        else:
+            export = bpy.ops.export_mesh.stl
+    """,
+    "an operator of some builds": """
+        if bpy.app.build_options.usd:
+            print(bpy.ops.wm.usd_export)
+    """,
+}
+# What refuses in every Blender, though something is asked.
+WRONG = {
+    "a socket that is used at once": 'node.inputs.get("Specula").default_value = 1',
+    "a socket that nothing asks for": """
+        socket = node.inputs.get("Specula")
+        socket.default_value = 1
+    """,
+    "a value behind a question about something else": """
+        modifier.solver = 'FIRST' if 'Cube' in bpy.data.objects else 'SECOND'
+    """,
+}
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_what_runs_has_no_error_and_what_does_not_has(version: str, base: Path, tmp_path: Path) -> None:
+    looked_into = base if version == INSTALLED else base_of(version)
+    scripts = {name: AROUND + dedent(lines) for name, lines in {**READY, **WRONG}.items()}
+    raised = dict(zip(scripts, errors_in(version, tmp_path, list(scripts.values())), strict=True))
+    assert {name for name, error in raised.items() if error} == set(WRONG)
+    with Checker(looked_into) as checker:
+        told = {
+            name: [one.message for one in checker.check(script) if one.severity == "error"]
+            for name, script in scripts.items()
+        }
+    assert {name: messages for name, messages in told.items() if messages and name in READY} == {}
+    assert all(told[name] for name in WRONG)
