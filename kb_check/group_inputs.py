@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import ID
@@ -11,6 +12,7 @@ from kb_check.made_here import (
     attributes,
     called_operators,
     callee_path,
+    is_new,
     keywords_and_texts,
     knows_all,
     members_taken,
@@ -35,6 +37,9 @@ _BRINGING = OPENING | {
 }  # fmt: skip
 # Pointers that are known by their names where it is not known whose they are.
 _POINTERS = frozenset({"node_group", "edit_tree"})
+# How the inputs and outputs of groups were called that were made before 4.0; these keep it.
+_FORMER = re.compile(r"(?:Input|Output)_(\d+)(?:_use_attribute|_attribute_name)?")
+_RENAMED_IN = (4, 0)
 # Members of a group that are one themselves.
 _ANOTHER = frozenset({"copy", "evaluated_get", "make_local", "original", "override_create"})
 
@@ -90,3 +95,20 @@ def named_inputs(script: Script) -> frozenset[str]:
             part.value for part in given if isinstance(part, ast.Constant) and isinstance(part.value, str)
         )
     return frozenset(found)
+
+
+def input_now(script: Script, node: ast.Subscript, modifier: ast.expr) -> str:
+    """The identifier that Blender now gives to the input which a modifier made here is asked for by one of before 4.0:
+    ``Socket_2`` for ``modifier["Input_2"]``. Empty where it may be that of a group of before, or a name.
+    """
+    if (
+        script.version < _RENAMED_IN
+        or not isinstance(node.slice, ast.Constant)
+        or not makes_all_groups(script)
+    ):
+        return ""
+    key = node.slice.value
+    former = _FORMER.fullmatch(key) if isinstance(key, str) else None
+    if former is None or key in named_inputs(script) or not is_new(script, modifier):
+        return ""
+    return f"Socket_{former[1]}"

@@ -106,10 +106,10 @@ def summary(migration: Migration) -> str:
     parts = [f"{_many(changes, 'change')} in {_many(changed, 'file')}"]
     if left:
         parts.append(f"{_many(left, 'place')} to decide")
-    elif migration.is_done:
+    elif migration.is_done and not kinds["warning"]:
         parts.append("nothing is left to decide")
     if kinds["warning"]:
-        parts.append(_many(kinds["warning"], "warning"))
+        parts.append(f"{_many(kinds['warning'], 'warning')} to look at")
     if notebooks:
         parts.append(
             f"{_many(len(notebooks), 'notebook')} left as {'it is' if len(notebooks) == 1 else 'they are'}"

@@ -31,6 +31,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.types import UNKNOWN, Instance, LocalInstance, members
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.findings import Edit, Finding, Fix
+from kb_check.group_inputs import input_now
 from kb_check.own_classes import own_classes
 from kb_check.rule import Rule
 from kb_check.tried import is_tried
@@ -151,6 +152,13 @@ def _of_inputs(script: Script, node: ast.expr, owner: ast.expr, cls: str) -> Fin
         owner.value if isinstance(owner, ast.Attribute) and cls != NODES_MODIFIER else owner
     )
     asked = _input(node.slice, modifier) if isinstance(node, ast.Subscript) else None
+    now = input_now(script, node, owner) if isinstance(node, ast.Subscript) and cls == NODES_MODIFIER else ""
+    if now:
+        told += (
+            f": write `{modifier}.{_INPUTS}.{now}.value`, as this input is called {now!r} now, or as `item.identifier` "
+            "of `node_group.interface.items_tree` says."
+        )
+        return Finding(RULE.id, "error", script.span(node), told, cls)
     if asked is None or not isinstance(node, ast.Subscript):
         told += f": its inputs are attributes, as `{modifier}.{_INPUTS}.Socket_2.value`."
         return Finding(RULE.id, "error", script.span(node), told, cls)

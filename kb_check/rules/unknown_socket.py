@@ -30,7 +30,6 @@ modifier["Input_2"] = 10.0  # a warning: Socket_2, or what `item.identifier` say
 from __future__ import annotations
 
 import ast
-import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Instance, Resolution
@@ -39,24 +38,19 @@ from kb_build.symbols.lines import subscripts_text
 from kb_build.symbols.records import NEVER_BY_IDENTIFIER, WHEN_PAIRED
 from kb_check.asked_for_none import is_ready_for_none
 from kb_check.findings import Finding
-from kb_check.group_inputs import makes_all_groups, named_inputs
-from kb_check.made_here import is_new
+from kb_check.group_inputs import input_now
 from kb_check.own_sockets import lacking_own
 from kb_check.raised import LACKS_KEY
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.socket_modes import is_internal
+from kb_serve.recognise.resolving.subscripts import NODES_MODIFIER
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.symbols.records import Symbol
     from kb_check.script import Script
-
-_MODIFIER = "bpy.types.NodesModifier"
-# How the inputs and outputs of groups were called that were made before 4.0; these keep it.
-_FORMER = re.compile(r"(?:Input|Output)_(\d+)(?:_use_attribute|_attribute_name)?")
-_RENAMED_IN = (4, 0)
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -89,8 +83,7 @@ def _check(script: Script) -> Iterator[Finding]:
         comes = f": {how} comes before" if how else ", as the `new` of its items would"
         told = f"Nothing in this script gives this `{cls}` a socket {key!r}{comes}."
         yield Finding(RULE.id, "error", script.span(node), told, cls)
-    if script.version >= _RENAMED_IN and makes_all_groups(script):
-        yield from _former_inputs(script)
+    yield from _former_inputs(script)
 
 
 def _misspelt(script: Script, node: ast.Subscript, cls: str, key: str) -> Finding | None:
@@ -105,23 +98,15 @@ def _misspelt(script: Script, node: ast.Subscript, cls: str, key: str) -> Findin
 
 def _former_inputs(script: Script) -> Iterator[Finding]:
     for node in script.all(ast.Subscript):
-        key = node.slice.value if isinstance(node.slice, ast.Constant) else None
-        former = _FORMER.fullmatch(key) if isinstance(key, str) else None
         kind = script.type_of(node.value)
-        if (
-            former
-            and key not in named_inputs(script)  # then it stands for that name: see input-by-name
-            and isinstance(kind, Instance)
-            and kind.sure
-            and kind.cls == _MODIFIER
-            and is_new(script, node.value)
-        ):
-            now = f"Socket_{former[1]}"
+        is_modifier = isinstance(kind, Instance) and kind.sure and kind.cls == NODES_MODIFIER
+        if is_modifier and (now := input_now(script, node, node.value)):
+            key = ast.unparse(node.slice)
             yield Finding(
                 RULE.id, "warning", script.span(node.slice),
-                f"No input of a group that this Blender makes is called {key!r}: since 4.0 they are called as {now!r}, "
+                f"No input of a group that this Blender makes is called {key}: since 4.0 they are called as {now!r}, "
                 "and `item.identifier` of `node_group.interface.items_tree` says how.",
-                _MODIFIER,
+                NODES_MODIFIER,
             )  # fmt: skip
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.api_names import SIDES
+from kb_build.symbols.api_names import BEGIN_DRAWING, SIDES
 from kb_build.symbols.records import GIVES_NONE, WINDOWLESS
 
 if TYPE_CHECKING:
@@ -22,4 +22,8 @@ def outcomes(symbol: Symbol) -> Iterator[str]:
         read = f": what a node has is in its `{side}`" if side in SIDES else ""
         yield f"Gave `None` for every index that was tried{read}."
     for said in symbol.flagged(WINDOWLESS):
-        yield f"Not in {_WITHOUT_WINDOW}: there it raises `SystemError`, “{said}”."
+        raised = f"it raises `SystemError`, “{said}”."
+        if BEGIN_DRAWING in said:
+            yield f"In {_WITHOUT_WINDOW} call `{BEGIN_DRAWING}()` first: until then {raised}"
+        else:
+            yield f"Not in {_WITHOUT_WINDOW}: there {raised}"

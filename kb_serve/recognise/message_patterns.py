@@ -32,7 +32,7 @@ ENUM_VALUE = re.compile(r"\benum (?P<quote>['\"])[^'\"\n]*(?P=quote)(?= not foun
 # Of modules written in C, which take texts rather than items of enumerations: ``gpu``.
 BAD_TEXT = re.compile(r"expected a string in \((?P<items>[^)]*)\), got '(?P<name>[^']*)'")
 BAD_KEYWORD = re.compile(
-    r"keyword \"(?P<name>\w+)\" (?:is invalid|unrecognized)"
+    r"(?:(?<![\w.])(?P<of_bmesh>\w++): )?keyword \"(?P<name>\w+)\" (?:is invalid|unrecognized)"
     r"|(?:(?<![\w.])(?P<function>[\w.]++)\(\) got an )?unexpected keyword argument ['\"](?P<unexpected>\w+)['\"]"
     r"(?:\. Did you mean '(?P<meant>\w+)'\?)?"
     r"|['\"](?P<invalid>\w+)['\"] is an invalid keyword argument for (?:this function|(?P<of>[\w.]++)\(\))"

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 
+_OF_BMESH = "bmesh.ops."
 _FEW = 3
 _MOST_TAKING = 12  # operators with an argument of one name that are listed
 _NO_OPERATOR_NAMED = (
@@ -36,10 +37,15 @@ class Keywords:
     def explain(self, query: str, recognition: Recognition) -> None:
         """Adds notes on each argument, and the function that it was given to."""
         for match in forms.first_matches(forms.BAD_KEYWORD, query):
-            function = match["function"] or match["of"] or match["method"] or ""
+            function = match["function"] or match["of"] or match["method"] or self._of_bmesh(match) or ""
             several = re.findall(r"\w+", match["several"] or "")
             for name in several or [match["name"] or match["unexpected"] or match["invalid"]]:
                 self._keyword(name, function, match["meant"] or "", recognition)
+
+    def _of_bmesh(self, match: re.Match[str]) -> str:
+        """The function of bmesh that a message names, as no other module words it: “bevel: keyword "x" is invalid”."""
+        path = f"{_OF_BMESH}{match['of_bmesh']}"
+        return path if self._reader.entry(path) else ""
 
     def _keyword(self, name: str, function: str, meant: str, recognition: Recognition) -> None:
         """An argument that the function in the message, or else the surest match, does not take (any more).
@@ -79,22 +85,37 @@ class Keywords:
         once = [
             path
             for path in self._reader.removed_named(name)
-            if path.startswith(OPERATORS) and path.endswith(f"({name})")
+            if path.startswith(OPERATORS) and path.endswith(f"({name})") and self._is_gone(path)
         ]
         uses = self._reader.use_counts([plain_path(path) for path in once])
         once.sort(key=lambda path: -uses.get(plain_path(path), 0))
         for removed in filter(None, map(self._removed.of_path, once[:_FEW])):
             recognition.add_removed(removed)
         recognition.is_open = len(recognition.removed) > 1
-        words = {
-            argument_of(target)
-            for old in recognition.removed
-            for target in old.targets
-            if target.endswith(")")
-        }
+        words = sorted(
+            {
+                argument_of(target)
+                for old in recognition.removed
+                for target in old.targets
+                if target.endswith(")")
+            }
+        )
         if not taking and not recognition.removed:
-            words = {near for near, _ in nearest(name, self._reader.operator_arguments, _FEW)}
-        for word in sorted(words - {name}):
-            if 0 < len(others := self._reader.operators_taking(word)) <= _MOST_TAKING:
-                listed = ", ".join(f"`{path}`" for path in others)
-                recognition.notes.append(f"`{word}` is the argument of {listed}.")
+            words = [near for near, _ in nearest(name, self._reader.operator_arguments, _FEW)]
+        for word in words:
+            if word == name:
+                continue
+            if not (others := self._reader.operators_taking(word)):
+                continue
+            more = ""
+            if len(others) > _MOST_TAKING:
+                uses = self._reader.use_counts(others)
+                others = sorted(others, key=lambda path: -uses.get(path, 0))[:_FEW]
+                more = " and others"
+            listed = ", ".join(f"`{path}`" for path in others)
+            recognition.notes.append(f"`{word}` is the argument of {listed}{more}.")
+
+    def _is_gone(self, path: str) -> bool:
+        """Whether this version lacks what an earlier one had, not what only a later one has."""
+        removed = self._reader.removed(path)
+        return removed is not None and bool(removed[2])

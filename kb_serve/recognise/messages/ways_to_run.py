@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.api_names import BEGIN_DRAWING
 from kb_serve.recognise import message_patterns as forms
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
 
-_BEGIN_DRAWING = "gpu.init"
 _NO_DRAWING = (
     "Blender runs without a window (`bpy.app.background` is True: started with `--background`, or as a Python module): "
     "shaders, batches and off-screen buffers of `gpu` work only in a Blender with a window. Images are rendered "
@@ -41,8 +41,8 @@ class WaysToRun:
 
     def _no_drawing(self, recognition: Recognition) -> None:
         """Blender without a window: what begins drawing there, where this version has it."""
-        if self._reader.entry(_BEGIN_DRAWING):
-            recognition.add(_BEGIN_DRAWING, 0.95, "error message")
+        if self._reader.entry(BEGIN_DRAWING):
+            recognition.add(BEGIN_DRAWING, 0.95, "error message")
         else:
             recognition.notes.append(_NO_DRAWING)
             recognition.add("bpy.app.background", 0.9, "error message")
