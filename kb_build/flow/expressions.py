@@ -43,7 +43,7 @@ from kb_build.flow.types import (
 )
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import argument_of, plain_path
-from kb_build.symbols.unlisted import FEWEST_VALUES, MORE_VALUES, STAND_INS
+from kb_build.symbols.unlisted import FEWEST_VALUES, MORE_VALUES, NAMED_IN_FILES, STAND_INS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -537,7 +537,7 @@ class Expressions(Members):
             if symbol is None:
                 continue
             items = symbol.enum_items
-            computed = symbol.enum_computed
+            computed = symbol.enum_computed or source in NAMED_IN_FILES
             if argument:
                 found = symbol.parameter(argument)
                 items, computed = (found.enum_items, found.is_open) if found else ((), False)

@@ -33,6 +33,11 @@ MORE_VALUES = {
     "bpy.types.ColorManagedDisplaySettings.display_device": ("NONE",),
 }  # fmt: skip
 
+# Enumerations with values that are called as something in the file: a pass of one's own, a layer's Cryptomatte.
+NAMED_IN_FILES = frozenset(
+    {"bpy.types.View3DShading.render_pass", "bpy.types.CompositorNodeCryptomatteV2.layer_name"}
+)
+
 # Values that stand in for those which Blender makes while it runs.
 STAND_INS = frozenset({"NONE", "DEFAULT", "PLACEHOLDER", "UNSUPPORTED"})
 FEWEST_VALUES = 2  # of an enumeration that can be judged: of fewer, Blender tells but a stand-in

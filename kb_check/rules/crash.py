@@ -12,6 +12,7 @@ strip.modifiers.new("Curves", "CURVES")  # reported: while bpy.context.workspace
 bpy.ops.sculpt.face_sets_create(
     mode="ALL"
 )  # reported without bpy.ops.ed.undo_push(), in a Blender without a window
+drawing.add_strokes([])  # reported
 image.gl_load()  # reported: in a Blender without a window
 bmesh.ops.bmesh_to_mesh(bm)  # reported: bm.to_mesh(mesh)
 bpy.app.help_text()  # reported: where Blender is a module of Python
@@ -55,6 +56,8 @@ if TYPE_CHECKING:
 
     from kb_check.script import Script
 
+# What crashes Blender where the sizes of what is added are none.
+_SIZED = frozenset({"bpy.types.GreasePencilDrawing.add_strokes", "bpy.types.Curves.add_curves"})
 _ENTERING = frozenset({"bpy.ops.object.mode_set", "bpy.ops.sculpt.sculptmode_toggle"})
 _RESETTING = "bpy.ops.wm.read_factory_settings"
 _GETTING = "bpy.types.bpy_prop_collection.get"
@@ -65,6 +68,7 @@ def _check(script: Script) -> Iterator[Finding]:
         yield from _given_none(script, given)
     for call in calls(script):
         yield from _left_out(script, call)
+        yield from _without_sizes(script, call)
         yield from _everywhere(script, call)
         yield from _in_some_blenders(script, call)
         yield from _unset(script, call)
@@ -129,6 +133,16 @@ def _left_out(script: Script, call: CallSite) -> Iterator[Finding]:
         wanted = " and ".join(f"`{name}`" for name in names)
         yield Finding(
             RULE.id, "warning", script.span(call.node), f"`{path}` crashes Blender without {wanted}.", path
+        )
+
+
+def _without_sizes(script: Script, call: CallSite) -> Iterator[Finding]:
+    """A call that adds as many things as there are sizes, and is given none."""
+    path = call.callee.symbol.path
+    sizes = call.argument("sizes") if path in _SIZED else None
+    if isinstance(sizes, (ast.List, ast.Tuple)) and not sizes.elts:
+        yield Finding(
+            RULE.id, "error", script.span(sizes), f"`{path}` crashes Blender where `sizes` is empty.", path
         )
 
 

@@ -72,6 +72,23 @@ _MOVED = (
     "A rigid body's simulation moves `ob.matrix_world`, not `ob.location` or `ob.rotation_euler`: call "
     "`scene.frame_set(frame)` for every frame from the first, then read `ob.matrix_world.translation`."
 )
+_STEPPED = (
+    "Rigid and soft bodies are simulated from one frame to the next: `for frame in range(scene.frame_start, 51): "
+    "scene.frame_set(frame)`. A jump to frame 50 leaves them where they were, and cloth somewhat elsewhere."
+)
+_ADDED_TO_WORLD = (
+    "`bpy.ops.rigidbody.world_add()` leaves the `collection` and the `constraints` of the world None. After "
+    '`scene.rigidbody_world.collection = bpy.data.collections.new("Bodies")` a script needs no selection: '
+    "`scene.rigidbody_world.collection.objects.link(obj)` makes a rigid body of `obj`."
+)
+_WEIGHED = (
+    "A canvas writes weights only for vertices that are in the group already: "
+    "`group.add(range(len(mesh.vertices)), 0.0, 'REPLACE')` before."
+)
+_OF_AOV = (
+    "An AOV is shown by its own name, `space.shading.render_pass = aov.name`, which the list has once the view layer "
+    "has the AOV."
+)
 _RACED = (
     "A rigid body with a mesh for its shape ('CONVEX_HULL', 'MESH') and a modifier that moves with the frame "
     "(Collision, Wave) crashes Blender once in some hundred runs, as it begins to simulate, where its `mesh_source` is "
@@ -124,7 +141,7 @@ _BAKED_BY = (
 )
 _ALL = "`{}(indices=[])` {}, as if it were left out: call it only `if indices:`."
 _COMPRESSED = (
-    "Left out, `compress` is not False: the file is compressed as the one that is open, and a new one where "
+    "Left out, `compress` is not False: the file is compressed as the one that was loaded last, and a new one where "
     "`bpy.context.preferences.filepaths.use_file_compression` is on. Write `compress=False` to have it uncompressed."
 )
 _UNREAD = (
@@ -194,6 +211,26 @@ ADVICE: tuple[Advice, ...] = (
         # By one of these a question says that something else than a script or its keys moves the object.
         asked=_stems("bake body bounce drop fall physics rigid roll settle simulate simulation"),
     ),
+    Advice(
+        _STEPPED,
+        wherever=(
+            _stems("cloth physics rigid simulate simulation soft"),
+            _stems("frame frames frame_set"),
+            _stems("after at get jump not only position read result skip step through without"),
+        ),
+    ),
+    Advice(
+        _ADDED_TO_WORLD,
+        _of("RigidBodyWorld.collection", "RigidBodyWorld.constraints"),
+        wherever=(_stems("rigid rigidbody"), _stems("nonetype none select selecting selection without")),
+    ),
+    Advice(
+        _WEIGHED,
+        _of("DynamicPaintSurface.output_name_a", "DynamicPaintSurface.surface_type")
+        | {"bpy.ops.dpaint.output_toggle"},
+        asked=_stems("weight group vertex"),
+    ),
+    Advice(_OF_AOV, _of("View3DShading.render_pass"), asked=_stems("aov")),
     Advice(_JOINED, frozenset({"bpy.ops.object.join"})),
     Advice(_NO_BONE, _of("ArmatureEditBones.new")),
     Advice(_FLAT, _of("MeshPolygon.use_smooth")),

@@ -275,3 +275,21 @@ def test_an_operator_that_ends_blender_without_an_undo_step_is_found(
 )
 def test_what_may_have_an_undo_step_is_left_alone(check: Check, code: str) -> None:
     assert not check("crash", code)
+
+
+@pytest.mark.parametrize(
+    ("made", "call"),
+    [
+        ("bpy.data.hair_curves.new('h')", "add_curves"),
+        (
+            "bpy.data.grease_pencils.new('g').layers.new('l').frames.new(1).drawing",
+            "add_strokes",
+        ),
+    ],
+)
+def test_nothing_to_add_crashes(check: Check, made: str, call: str) -> None:
+    code = f"import bpy\ndata = {made}\ndata.{call}({{}})\n"
+    assert [one.severity for one in check("crash", code.format("[]"))] == ["error"]
+    assert check("crash", code.format("[3]")) == []
+    assert _ends(code.format("[]"))
+    assert not _ends(code.format("[3]"))

@@ -326,3 +326,23 @@ def test_a_value_that_stays_is_sure(rule_checker: Checker, lines: str) -> None:
 def test_what_is_changed_runs(tmp_path: Path) -> None:
     done = run_statements(tmp_path, [AROUND + dedent(lines) for lines in CHANGED.values()])
     assert {name: row[0] for name, row in zip(CHANGED, done, strict=True) if row[0]} == {}
+
+
+def test_values_that_are_called_as_something_in_the_file_are_taken(
+    rule_checker: Checker, tmp_path: Path
+) -> None:
+    code = """
+import bpy
+layer = bpy.context.view_layer
+layer.name = "Main"
+layer.use_pass_cryptomatte_material = True
+node = bpy.data.node_groups.new("t", "CompositorNodeTree").nodes.new("CompositorNodeCryptomatteV2")
+node.scene = bpy.context.scene
+node.layer_name = "Main.CryptoMaterial"
+layer.aovs.add().name = "own"
+screen = bpy.data.screens["Layout"]
+space = next(area.spaces.active for area in screen.areas if area.type == "VIEW_3D")
+space.shading.render_pass = "own"
+"""
+    assert [error for error, *_ in run_statements(tmp_path, [code])] == [""]
+    assert [one.message for one in rule_checker.check(code) if one.severity == "error"] == []

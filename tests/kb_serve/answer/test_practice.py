@@ -605,6 +605,57 @@ def test_what_other_functions_return_is_no_dictionary(kb: KnowledgeBase) -> None
     assert "**Returns**\n" in kb.query("bpy.types.Object.ray_cast").text
 
 
+# Simulations
+
+
+def test_a_simulation_is_stepped_through(reader: BaseReader) -> None:
+    question = "position of a rigid body at frame 50 after the simulation"
+    assert "scene.frame_set(frame)" in said(reader, f"{TYPES}RigidBodyObject.kinematic", question)
+    assert "one frame to the next" not in said(reader, f"{TYPES}Scene.frame_set")
+    ended: list[float] = []
+    for frames in ([1, 30], range(1, 31)):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.mesh.primitive_cube_add(location=(0, 0, 10))
+        obj = bpy.context.object
+        bpy.ops.rigidbody.object_add()
+        for frame in frames:
+            bpy.context.scene.frame_set(frame)
+        ended.append(obj.matrix_world.translation.z)
+    assert ended[0] == 10.0
+    assert ended[1] < 4
+
+
+def test_a_new_rigid_body_world_is_given_a_collection(reader: BaseReader) -> None:
+    assert "`scene.rigidbody_world.collection.objects.link(obj)`" in said(
+        reader, f"{TYPES}RigidBodyWorld.collection"
+    )
+    bpy.ops.rigidbody.world_add()
+    world = bpy.context.scene.rigidbody_world
+    assert (world.collection, world.constraints) == (None, None)
+    world.collection = bpy.data.collections.new("Bodies")
+    bpy.ops.mesh.primitive_cube_add()
+    obj = bpy.context.object
+    world.collection.objects.link(obj)
+    assert obj.rigid_body
+
+
+def test_a_canvas_writes_weights_of_vertices_in_the_group(reader: BaseReader) -> None:
+    path = f"{TYPES}DynamicPaintSurface.output_name_a"
+    assert "`group.add(" in said(reader, path, "weights of a vertex group by dynamic paint")
+    assert "`group.add(" not in said(reader, path)
+
+
+def test_an_aov_is_shown_by_its_name(reader: BaseReader) -> None:
+    assert "`space.shading.render_pass = aov.name`" in said(
+        reader, f"{TYPES}View3DShading.render_pass", "show an aov"
+    )
+    bpy.context.view_layer.aovs.add().name = "own"
+    shading = bpy.context.scene.display.shading
+    shading.render_pass = "own"
+    with pytest.raises(TypeError):
+        shading.render_pass = "nobody's"
+
+
 # Modules
 
 

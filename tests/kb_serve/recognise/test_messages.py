@@ -883,3 +883,20 @@ def test_what_all_data_blocks_have_is_had_by_that_of_a_bone(kb: KnowledgeBase) -
     assert any("`.id_data.update_tag`" in note for note in answer.notes)
     assert "custom_shape" not in answer.text.partition("##")[0]
     assert "id_data" not in kb.query("AttributeError: 'Context' object has no attribute 'update_tag'").text
+
+
+def test_the_message_of_bmesh_names_its_function(kb: KnowledgeBase) -> None:
+    answer = kb.query('TypeError: bevel: keyword "vertex_only" is invalid for this operator')
+    assert answer.hits[0].id == "bmesh.ops.bevel"
+    assert "Use `bmesh.ops.bevel(affect=…)`" in answer.notes[0]
+
+
+def test_a_keyword_that_many_take_is_offered_by_those_that_scripts_use_most(kb: KnowledgeBase) -> None:
+    notes = kb.query(
+        'TypeError: Converting py args to operator properties:: keyword "values" unrecognized'
+    ).notes
+    assert any("`value` is the argument of" in note and "translate`" in note for note in notes)
+    notes = kb.query(
+        'TypeError: Converting py args to operator properties:: keyword "name" unrecognized'
+    ).notes
+    assert not any("new in" in note for note in notes)
