@@ -103,9 +103,8 @@ class Keywords:
         if not taking and not recognition.removed:
             words = [near for near, _ in nearest(name, self._reader.operator_arguments, _FEW)]
         for word in words:
-            if word == name:
-                continue
-            if not (others := self._reader.operators_taking(word)):
+            others = self._reader.operators_taking(word) if word != name else []
+            if not others:
                 continue
             more = ""
             if len(others) > _MOST_TAKING:
