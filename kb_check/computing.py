@@ -25,15 +25,8 @@ _BUILTINS = frozenset({"builtins", "__builtins__"})
 @once_per_script
 def computing(script: Script) -> frozenset[str]:
     """Those of the names that the script has anywhere: to call them, or under another name."""
-    found: set[str] = set()
-    for node in script.all(ast.Name, ast.Attribute, ast.alias):
-        match node:
-            case ast.Name(id=name) | ast.alias(name=name):
-                found.add(name)
-            case ast.Attribute(value=ast.Name(id=owner), attr=name) if owner in _BUILTINS:
-                found.add(name)
-            case ast.Attribute(attr=name) if name.startswith("__"):
-                found.add(name)
-            case _:
-                pass
+    found = {node.id for node in script.all(ast.Name)} | {node.name for node in script.all(ast.alias)}
+    for node in script.all(ast.Attribute):
+        if node.attr.startswith("__") or (isinstance(node.value, ast.Name) and node.value.id in _BUILTINS):
+            found.add(node.attr)
     return frozenset(found & (RUNNING | STORING | NAMESPACES | CALLING))

@@ -111,10 +111,11 @@ class Bones:
 
     def pass_by(self, statement: ast.stmt) -> None:
         """Goes on to what is known behind a statement."""
-        for name in bound_in(statement):
-            self.gone.discard(name)
-            self._held.discard(name)
-            self._things.pop(name, None)
+        if self.gone or self._held or self._things:
+            for name in bound_in(statement):
+                self.gone.discard(name)
+                self._held.discard(name)
+                self._things.pop(name, None)
         if (mode := self._entered(statement)) is not None:
             self._change_mode(mode)
         elif not self._adds(statement) and not self._selects(statement) and not self._activates(statement):
@@ -186,6 +187,8 @@ class Bones:
             self._outside.clear()
             self._active = None
             self._without_bones.clear()
+        if not (self._things or self._active):
+            return
         stores = (
             node
             for node in walk(statement)

@@ -7,7 +7,7 @@ import builtins
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import SET_ACTIVE
-from kb_build.flow.trees import children
+from kb_build.flow.trees import APART, children
 from kb_check.calls import calls_by_node
 from kb_check.computing import CALLING, RUNNING, STORING
 from kb_check.made_here import bindings, knows_all, stored_names
@@ -94,7 +94,7 @@ def _run(root: ast.AST) -> Iterator[ast.AST]:
     waiting = [root]
     while waiting:
         node = waiting.pop()
-        if not isinstance(node, (*FUNCTIONS, ast.ClassDef, ast.Lambda)):
+        if not isinstance(node, APART):
             yield node
             waiting += children(node)
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.trees import children, walk
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 
     from kb_build.flow.source_files import SourceFile
 
@@ -48,12 +48,17 @@ def doubt_what_others_use(
     named = {name for part in guarded for node in walk(part) for name in _named(node)}
     if not any(isinstance(node, _DEFINITIONS) and node.name in named for node in definitions):
         return
-    uses = _all_uses(files)
-    found = [
+    defined = [
         (file, node)
         for file in files
         for node in walk(file.tree or ast.Module([], []))
-        if isinstance(node, _DEFINITIONS) and any(node not in use.inside for use in uses.get(node.name, ()))
+        if isinstance(node, _DEFINITIONS)
+    ]
+    uses = _all_uses(files, {node.name for _, node in defined})
+    found = [
+        (file, node)
+        for file, node in defined
+        if any(node not in use.inside for use in uses.get(node.name, ()))
     ]
     _spread([(file, node) for file, node in found if not _is_special(node) and not is_called(node)], uses)
 
@@ -93,15 +98,16 @@ def _is_special(node: _Definition) -> bool:
     )
 
 
-def _all_uses(files: Sequence[SourceFile]) -> Mapping[str, Sequence[_Use]]:
+def _all_uses(files: Sequence[SourceFile], names: Container[str]) -> Mapping[str, Sequence[_Use]]:
+    """Name → the places that name it, for those of some names."""
     found: defaultdict[str, list[_Use]] = defaultdict(list)
     for file in files:
-        for name, use in _uses(file):
+        for name, use in _uses(file, names):
             found[name].append(use)
     return found
 
 
-def _uses(file: SourceFile) -> Iterator[tuple[str, _Use]]:
+def _uses(file: SourceFile, names: Container[str]) -> Iterator[tuple[str, _Use]]:
     waiting: list[tuple[ast.AST, tuple[ast.AST, ...], bool, bool]] = [
         (file.tree or ast.Module([], []), (), False, False)
     ]
@@ -110,8 +116,9 @@ def _uses(file: SourceFile) -> Iterator[tuple[str, _Use]]:
         left_out = left_out or node in file.left_out
         doubted = doubted or node in file.doubted
         for name in _named(node):
-            # What is left out at one reading may be read at another.
-            yield name, _Use(inside, doubted or (left_out and node not in file.types))
+            if name in names:
+                # What is left out at one reading may be read at another.
+                yield name, _Use(inside, doubted or (left_out and node not in file.types))
         within = (*inside, node) if isinstance(node, _DEFINITIONS) else inside
         waiting += ((part, within, left_out, doubted) for part in children(node))
 

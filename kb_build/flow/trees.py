@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import sys
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -12,6 +13,8 @@ if TYPE_CHECKING:
 _NO_NODES = frozenset(
     {
         "id",
+        "name",
+        "str",
         "attr",
         "arg",
         "kind",
@@ -39,10 +42,14 @@ class _Fields(dict[type[ast.AST], tuple[str, ...]]):
         return fields
 
 
-_FIELDS = _Fields({ast.Constant: ()})
+# Where fields of the same names hold texts, or a value.
+_FIELDS = _Fields(dict.fromkeys((ast.Constant, ast.MatchSingleton, ast.Global, ast.Nonlocal), ()))
+_FIELDS[ast.MatchClass] = ("cls", "patterns", "kwd_patterns")
+if sys.version_info >= (3, 12):
+    _FIELDS[ast.TypeAlias] = ("name", "type_params", "value")
 # What is defined where it stands, and run elsewhere.
 APART = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
-# Lists in which None stands for what is not there; others hold nodes alone, or no nodes at all.
+# Lists in which None stands for what is not there; others hold nodes alone.
 _WITH_GAPS = frozenset({"keys", "kw_defaults"})
 
 
@@ -53,13 +60,14 @@ def children(node: ast.AST) -> list[ast.AST]:
     found: list[ast.AST] = []
     for name in _FIELDS[type(node)]:
         value = getattr(node, name, None)
-        if isinstance(value, list):
-            if name in _WITH_GAPS:
-                found += [each for each in value if each is not None]
-            elif value and isinstance(value[0], ast.AST):
-                found += value
-        elif isinstance(value, ast.AST):
+        if value is None:
+            continue
+        if type(value) is not list:
             found.append(value)
+        elif name in _WITH_GAPS:
+            found += [each for each in value if each is not None]
+        else:
+            found += value
     return found
 
 
