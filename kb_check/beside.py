@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-import weakref
 from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
 
 if TYPE_CHECKING:
     from kb_check.checker import Checker
     from kb_serve.reader import BaseReader
 
 _KEPT = 100  # look-ups: the pieces of code in queries are short
-_CHECKERS: WeakKeyDictionary[BaseReader, Checker] = WeakKeyDictionary()
 
 
 def checker_beside(reader: BaseReader) -> Checker:
-    """The checker of the base that a reader reads. It is closed when the reader is gone."""
-    found = _CHECKERS.get(reader)
-    if found is None:
-        from kb_check.checker import Checker  # noqa: PLC0415 - loaded by the first check
+    """The checker of the base that a reader reads, which is closed with it."""
+    return reader.shared(_make_checker)
 
-        found = _CHECKERS[reader] = Checker(reader.path, _KEPT)
-        weakref.finalize(reader, found.close)
-    return found
+
+def _make_checker(reader: BaseReader) -> Checker:
+    from kb_check.checker import Checker  # noqa: PLC0415 - loaded by the first check
+
+    checker = Checker(reader, _KEPT)
+    reader.close_with(checker.close)
+    return checker

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from contextlib import ExitStack, closing
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -50,15 +51,18 @@ class Read:
 class Checker:
     """Checks scripts against one base. Raises BaseMissing or BaseUnreadable when it cannot be opened.
 
-    ``kept``: how many look-ups of each kind are kept in memory.
+    ``base`` is the file, or what reads it for others as well, who close it. ``kept``: how many look-ups of each kind
+    are kept in memory.
     """
 
-    def __init__(self, base: Path, kept: int = MOST_KEPT) -> None:
-        self._reader = BaseReader(base)
-        self._symbols = BaseSymbols(base, kept)
-        self.names = KnownNames(self._reader)
-        self.api = Api(self._symbols, self.names)
-        self.version = version_key(self._reader.meta["blender"])
+    def __init__(self, base: Path | BaseReader, kept: int = MOST_KEPT) -> None:
+        with ExitStack() as opened:
+            reader = base if isinstance(base, BaseReader) else opened.enter_context(closing(BaseReader(base)))
+            symbols = opened.enter_context(closing(BaseSymbols(reader.path, kept)))
+            self._opened = opened.pop_all()
+        self.names = KnownNames(reader)
+        self.api = Api(symbols, self.names)
+        self.version = version_key(reader.meta["blender"])
 
     def read(self, code: str) -> Read:
         """Reads a script. Nothing is imported or run; bad input of every kind ends in a finding."""
@@ -118,8 +122,7 @@ class Checker:
 
     def close(self) -> None:
         """Closes the base."""
-        self._reader.close()
-        self._symbols.close()
+        self._opened.close()
 
     def __enter__(self) -> Self:
         return self

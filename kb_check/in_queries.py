@@ -14,6 +14,7 @@ from kb_build.symbols.api_names import TYPES
 from kb_check.beside import checker_beside
 from kb_check.source import split_lines
 from kb_check.summary import mended
+from kb_serve.reader import UNLIMITED
 from kb_serve.recognise.code.wrong_values import NO_VALUE
 from kb_serve.recognise.removed.lost_names import is_telling
 from kb_serve.recognise.resolving.variables import is_guess, usual_classes
@@ -67,7 +68,8 @@ def notes_on_code(reader: BaseReader, query: str) -> tuple[str, ...]:
     code = f"{_bindings(tree, checker)}\n{code}"
     lines = split_lines(code)
     try:
-        findings = [*_news(checker.check(code, rules=(*_RULES, _NEVER_TRUE, _GONE)))]
+        with reader.bounded(UNLIMITED):  # each line of the code may take as much as a query
+            findings = [*_news(checker.check(code, rules=(*_RULES, _NEVER_TRUE, _GONE)))]
     except sqlite3.DatabaseError as error:
         raise checker.names.reader.damaged(error) from error
     notes = list(dict.fromkeys(_note(finding, lines) for finding in findings))

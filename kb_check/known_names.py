@@ -259,7 +259,7 @@ class KnownNames:
         """Loaded, with numpy, for the first name that nothing resembles."""
         from kb_serve.rank.search import Searcher  # noqa: PLC0415
 
-        return Searcher(self.reader)
+        return self.reader.shared(Searcher)
 
     @staticmethod
     def _path_of(owner: str, found: str) -> str:

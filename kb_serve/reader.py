@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 import sqlite3
 import zlib
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 from kb_build.schema import Mark, NoBase, open_read_only, unpack
 from kb_build.symbols.api_names import COLLECTION, TYPES
@@ -24,10 +24,11 @@ if TYPE_CHECKING:
 
 _Record = TypeVar("_Record")
 _Value = TypeVar("_Value")
+_Shared = TypeVar("_Shared")
 
 EXTEND = "__extend__"  # the identifier of the socket at which a node gets more
 PROPERTIES = "bpy.props."  # whose functions scripts import by name
-_UNLIMITED = float("inf")
+UNLIMITED = float("inf")
 
 
 class SymbolEntry(NamedTuple):
@@ -144,7 +145,9 @@ class BaseReader:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._connection = open_file(path)
-        self._work_left = _UNLIMITED
+        self._opened = ExitStack()
+        self.close_with(self._connection.close)
+        self._work_left = UNLIMITED
         # A symbol's or page's row, or None; the pages right below one, in the manual's order; the targets of a symbol's
         # links to the manual; (form, id) of everything spelled like a key (see analysis.key), preferred forms first.
         # An entry takes nearly a kilobyte, and a class has fifty members.
@@ -164,10 +167,21 @@ class BaseReader:
         self.page = lru_cache(maxsize=8)(self._page)
         # A thousand symbols share a name, and resolving asks for the same few again and again.
         self.by_name = lru_cache(maxsize=8)(self._by_name)
+        self._shared: dict[object, object] = {}
+
+    def shared(self, make: Callable[[BaseReader], _Shared]) -> _Shared:
+        """What is made of the base once, for all that read it with this reader."""
+        if make not in self._shared:
+            self._shared[make] = make(self)
+        return cast("_Shared", self._shared[make])
 
     def close(self) -> None:
-        """Closes the file."""
-        self._connection.close()
+        """Closes the file, and what was opened beside it."""
+        self._opened.close()
+
+    def close_with(self, close: Callable[[], object]) -> None:
+        """Closes something else when the file is closed."""
+        self._opened.callback(close)
 
     def rows(self, sql: str, *values: object) -> list[Any]:
         """Runs one SQL query. Raises BaseUnreadable for a damaged file, and BadQuery (see ``bounded``)."""
@@ -186,12 +200,15 @@ class BaseReader:
 
     @contextmanager
     def bounded(self, most: float) -> Generator[None]:
-        """Lets look-ups raise BadQuery once there were ``most`` of them and of the rows that they found, together."""
-        self._work_left = most
+        """Lets look-ups raise BadQuery once there were ``most`` of them and of the rows that they found, together.
+
+        Within another bound it counts for itself.
+        """
+        before, self._work_left = self._work_left, most
         try:
             yield
         finally:
-            self._work_left = _UNLIMITED
+            self._work_left = before
 
     def rows_of(self, sql: str, keys: Collection[object], order: str = "") -> list[Any]:
         """The rows with any of the keys, by the columns ``order`` if given; ``sql`` ends with the keys' column."""

@@ -123,7 +123,7 @@ class QueryRanker:
         """The search in plain words; loaded, with numpy, by the first query that is not just a name."""
         from kb_serve.rank.search import Searcher  # noqa: PLC0415
 
-        return Searcher(self._reader)
+        return self._reader.shared(Searcher)
 
     def rank(self, query: str, limit: int = _LEAST_HITS, about: str = "") -> Ranking:
         """The ids for a query, at least ``limit`` of them if there are; ``about``: see Searcher.search."""
