@@ -179,7 +179,7 @@ class AnswerComposer:
         found: list[list[RankedId]] = []
         for number, part in enumerate(parts, 1):
             told = {row.id for rows in found for row in rows}
-            ranked = self._ranker.rank(part.text, limit, part.about)
+            ranked = self._ranker.rank(part.asked, limit, part.about)
             rows = [row for row in self._listed(ranked, limit) if row.id not in told]
             hits = hits_of(rows, self._reader)
             names = [place for place, hit in enumerate(hits) if not hit.is_page]

@@ -18,6 +18,7 @@ from kb_serve.recognise.code.refusals import keywords
 from kb_serve.recognise.code.wrong_arguments import wrong_arguments
 from kb_serve.recognise.code.wrong_values import wrong_values
 from kb_serve.recognise.message_patterns import (
+    BAD_ENUM,
     classes_of_things,
     is_message,
     without_callers_names,
@@ -139,7 +140,7 @@ class Recogniser:
         if name := name_on_an_old_node(old):
             tell_of_the_newer_node(name, self._reader, recognition)
         tell_of_the_newer_mix(old, self._reader, recognition)
-        self._explain_removed(recognition)
+        self._explain_removed(recognition, is_refused_value=BAD_ENUM.search(query) is not None)
         self._explain_missing(recognition)
         recognition.matches.sort(key=lambda match: (-match.sure, match.why != "successor"))
         return recognition
@@ -242,8 +243,10 @@ class Recogniser:
                 if removed.path.endswith(f":{value}"):
                     recognition.add_removed(removed)
 
-    def _explain_removed(self, recognition: Recognition) -> None:
+    def _explain_removed(self, recognition: Recognition, *, is_refused_value: bool) -> None:
         """Adds what took the place of the removed symbols; the owner where nothing did."""
+        if is_refused_value:  # then what it was set to is there
+            recognition.removed = [one for one in recognition.removed if {":", "("} & {*one.path}]
         # Whatever else fits some word of the query would pass for the successor.
         guesses = _GUESSES if recognition.dead_end else _OF_STRINGS if recognition.removed else ()
         recognition.matches = [match for match in recognition.matches if match.why not in guesses]
@@ -280,6 +283,9 @@ class Recogniser:
 
     def _explain_name(self, missing: MissingName, recognition: Recognition) -> None:
         """Adds similar members of the class that lacks a name, or the name on other classes, or the class."""
+        if socket := self._input(missing):
+            recognition.add(socket, _WITHIN if missing.told else _HELD_PERHAPS, SIMILAR)
+            return
         for place, path in enumerate(self._operators.having(missing.owner, missing.name)):
             recognition.add(path, 0.95 - 0.01 * place, SIMILAR)
         otherwise = said_otherwise(missing, self._operators, self._reader)
@@ -307,6 +313,12 @@ class Recogniser:
                 recognition.add(member.path, 0.95 * alike - 0.01 * place, SIMILAR)
         if self._reader.entry(missing.owner) and not similar and not otherwise:
             self._like_nothing(missing, names, recognition)
+
+    def _input(self, missing: MissingName) -> str:
+        """The path of the input of a node that is called as what it lacks; empty for none."""
+        members = self._reader.members(missing.owner).items() if missing.owner else ()
+        inputs = (one for name, one in members if name.startswith("inputs["))
+        return next((one.path for one in inputs if key(one.label) == key(missing.name)), "")
 
     def _like_nothing(self, missing: MissingName, names: list[str], recognition: Recognition) -> None:
         """Adds the members that begin with a name's first word or shorten it, and the name on other classes or the

@@ -30,6 +30,9 @@ _ALSO_NAMES = frozenset(
     print record render repeat rig scale scatter sculpt shade shrink smooth snap split start stick stop subdivide switch
     texture track transfer weight weld""".split()  # noqa: SIM905
 )
+# Verbs of a topic that each kind of thing has its own way of, and of one whose steps are of nothing in particular.
+_BY_KIND = frozenset({"bake", "extrude"})
+_OF_ALL = frozenset({"animate"})
 _OBJECTS = frozenset(
     "a an all another both each every everything him it its my one our that the their them these this those two".split()  # noqa: SIM905
 )
@@ -44,10 +47,21 @@ class QuestionPart(NamedTuple):
     about: str = ""
 
     @property
+    def asked(self) -> str:
+        """What is asked, with what a pronoun stands for where that decides: ``bake smoke`` of ``simulate smoke and bake
+        it``.
+        """
+        verb, _, rest = _FRAME.sub("", self.text, count=1).partition(" ")
+        pronoun, _, behind = rest.partition(" ")
+        is_left_open = self.about and verb.lower() in _BY_KIND and pronoun.lower() in _PRONOUNS
+        return f"{verb} {self.about} {behind}".rstrip() if is_left_open else self.text
+
+    @property
     def topic(self) -> str:
         """What may be a topic of its own; empty for a verb of what the first part is about: assign it."""
         verb, _, rest = _FRAME.sub("", self.text, count=1).lower().partition(" ")
-        return "" if self.about and verb in _VERBS and rest in _PRONOUNS else self.text
+        is_of_all = verb in _VERBS or verb in _OF_ALL
+        return "" if self.about and is_of_all and rest in _PRONOUNS else self.asked
 
 
 def parts_of(query: str) -> tuple[QuestionPart, ...]:

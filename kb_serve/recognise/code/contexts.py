@@ -6,9 +6,11 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.index.analysis import split_arguments
 from kb_build.symbols.flags import operator_also, operator_areas, operator_given, refused_nothing
 from kb_build.symbols.lines import TRIED, operator_needs
 from kb_build.symbols.records import REFUSED_ALL
+from kb_serve.recognise.resolving.chains import find_chains
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,6 +27,7 @@ NO_OVERRIDE = (
 _WITH = "with bpy.context.temp_override"
 _ACTIVE = "bpy.context.view_layer.objects.active = ob"
 _SELECTED = "ob.select_set(True)"
+_KEYWORD = re.compile(r"\s*\w+\s*=(?!=)")
 _OF_AREA = re.compile(r"\barea\.")  # a statement on the area
 # A name for what a member of the context is taken from.
 _THINGS = {"id": "ob", "point_cache": "modifier.point_cache", "edit_image": "image", "edit_text": "text"}
@@ -35,14 +38,15 @@ _INSTEAD = {
 }
 
 
-def context_for(operator: Symbol, like: str = "") -> str:
+def context_for(operator: Symbol, like: str = "", arguments: str = "") -> str:
     """What lets an operator run whose ``poll()`` failed; ``like`` is the member of the context that those like it want,
-    if nothing is known of itself.
+    if nothing is known of itself; ``arguments`` are those that it was called with, as they are written.
     """
     path = operator.path
+    call = f"{path}({arguments or _ARGUMENTS.get(path, '')})"
     failed = f"`{path}.poll()` failed: "
     if needs := operator_needs(operator):
-        return f"{failed}of all that was tried, it takes {needs}. {_giving(operator)}".rstrip()
+        return f"{failed}of all that was tried, it takes {needs}. {_giving(operator, call)}".rstrip()
     if refused_nothing(operator):
         return (
             f"{failed}it refused nothing that was tried: no object, objects of all types in all modes, no area. "
@@ -51,7 +55,7 @@ def context_for(operator: Symbol, like: str = "") -> str:
     if like:
         return (
             f"{failed}operators like it take `{like}` in the context, here one that it can work on: "
-            f"`{_WITH}({like}={_THINGS.get(like, like)}): {path}()`."
+            f"`{_WITH}({like}={_THINGS.get(like, like)}): {call}`."
         )
     if REFUSED_ALL in operator.flags:
         return (
@@ -64,8 +68,10 @@ def context_for(operator: Symbol, like: str = "") -> str:
     )
 
 
-def _in_area(path: str, area: str, also: Sequence[str]) -> str:
-    """Lines that set what an operator wants besides, and give it an area; ``any`` for the first that there is."""
+def _in_area(call: str, area: str, also: Sequence[str]) -> str:
+    """Lines that set what a call of an operator wants besides, and give it an area; ``any`` for the first that there
+    is.
+    """
     areas = "bpy.context.window.screen.areas"
     found = f"{areas}[0]" if area == "any" else f"next(a for a in {areas} if a.type == '{area}')"
     first = next((at for at, text in enumerate(also) if _OF_AREA.search(text)), len(also))
@@ -74,7 +80,7 @@ def _in_area(path: str, area: str, also: Sequence[str]) -> str:
         f"area = {found}",
         *also[first:],
         "region = next(r for r in area.regions if r.type == 'WINDOW')",
-        f"{_WITH}(area=area, region=region): {path}()",
+        f"{_WITH}(area=area, region=region): {call}",
     ]
     return f"{'; '.join(f'`{line}`' for line in lines)}. Where there is no window, there is no area."
 
@@ -91,24 +97,31 @@ def _entering(needs: OperatorNeeds) -> str:
     return f"`bpy.ops.object.mode_set(mode='{needs.mode_to_enter}')`" if needs.mode_to_enter else ""
 
 
-def _giving(operator: Symbol) -> str:
-    """Lines that give an operator what it wants; empty where its needs say how."""
-    path = operator.path
+def _giving(operator: Symbol, call: str) -> str:
+    """Lines that give a call of an operator what it wants; empty where its needs say how."""
     if member := operator_given(operator):
-        given = f"`{_WITH}({member}={_THINGS.get(member, member)}): {path}({_ARGUMENTS.get(path, '')})`."
-        return f"{given} {_INSTEAD.get(path, '')}".rstrip()
+        given = f"`{_WITH}({member}={_THINGS.get(member, member)}): {call}`."
+        return f"{given} {_INSTEAD.get(operator.path, '')}".rstrip()
     needs = operator.needs
     active = _made_active(needs) if needs else []
     entered = _entering(needs) if needs else ""
     if areas := operator_areas(operator):
         before = [*active, *([entered] if active and entered else [])]
-        return "".join(f"{line}; " for line in before) + _in_area(path, areas[0], operator_also(operator))
+        return "".join(f"{line}; " for line in before) + _in_area(call, areas[0], operator_also(operator))
     if needs is None or not needs.active:
         return ""
     if not active:  # any, or none
         return f"{entered} comes before." if entered else ""
     given = ", ".join(active)
     return f"{given}, then {entered}." if entered else f"{given} comes before."
+
+
+def keywords_given(query: str, path: str) -> str:
+    """The arguments that the first call of an operator in a query has, as they are written; empty where one of them has
+    no name.
+    """
+    given = next((chain.call for chain in find_chains(query) if chain.dotted == path and chain.call), "")
+    return given if given and all(_KEYWORD.match(each) for each in split_arguments(given)) else ""
 
 
 def with_context(chain: Chain) -> str:

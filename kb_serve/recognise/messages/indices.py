@@ -10,6 +10,7 @@ from kb_build.symbols.records import EVALUATED
 from kb_serve.recognise import message_patterns as forms
 
 if TYPE_CHECKING:
+    from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
 
@@ -60,8 +61,20 @@ class Indices:
             entries = [entry for entry in entries if entry.path in found] or entries
             if len({(entry.collection, entry.target) for entry in entries}) == 1:
                 functions = self._reader.members(f"{TYPES}{entries[0].collection}")
+                adding = next((functions[one].path for one in _ADD if one in functions), "")
+                if symbol := self._reader.symbol(adding):
+                    return f"{note} {_added_by(name, symbol)}"
                 made = self._reader.creations([f"{TYPES}{entries[0].target}"]).values()
-                calls = [f".{name}.{function}()" for function in _ADD if function in functions]
-                calls = calls or [creation.call for creation in made]
-                return f"{note} `{calls[0]}` adds one." if calls else note
+                return next((f"{note} `{creation.call}` adds one." for creation in made), note)
         return note
+
+
+def _added_by(name: str, function: Symbol) -> str:
+    """The call of a collection's function that adds an element, and the things whose collection refuses it."""
+    given = ", ".join(parameter.name for parameter in function.parameters if parameter.required)
+    told = f"`.{name}.{function.name}({given})` adds one"
+    refusing = {(one.by, one.taken_by) for one in function.refusals if one.by and not one.values}
+    if len(refusing) != 1:
+        return f"{told}."
+    ((by, taken_by),) = refusing
+    return f"{told} to a {' or '.join(taken_by)}; a {' or '.join(by)} refuses it."

@@ -9,7 +9,7 @@ from kb_build.symbols.api_names import OPERATORS, TYPES
 from kb_build.symbols.flags import operator_given, refused_nothing
 from kb_build.symbols.lines import operator_needs
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.code.contexts import NO_OVERRIDE, OVERRIDE, context_for
+from kb_serve.recognise.code.contexts import NO_OVERRIDE, OVERRIDE, context_for, keywords_given
 from kb_serve.recognise.messages.guides import ON_OPERATORS, add_guide
 from kb_serve.recognise.names.corrections import nearest
 
@@ -49,7 +49,11 @@ class Operators:
                 if _SAYS_WHY.match(query, match.end()):
                     continue
                 recognition.notes.append(
-                    context_for(symbol, self._said_to_want(symbol, query[match.end() :]))
+                    context_for(
+                        symbol,
+                        self._said_to_want(symbol, query[match.end() :]),
+                        keywords_given(query, symbol.path),
+                    )
                 )
                 add_guide(ON_OPERATORS, self._reader, recognition)
                 recognition.add(OVERRIDE, 0.82, "error message")

@@ -81,6 +81,8 @@ class Values:
                 yield self._never_had(owner, name, items) or _NOT_NOW.format(name=name, owner=owner)
             labelled = ", ".join(f"`{item}`" for item in self._labelled(owner, name, items)[:_FEW])
             yield labelled and _LABELLED.format(name=name, items=labelled)
+        beside = ", ".join(f"`{other}`" for other in self._taking_beside(owners, name))
+        yield beside and f"`{name}` is a value of {beside}."
         similar = _closest(name, items) or self._explaining(owners, name)
         yield similar and _NO_ITEM.format(name=name, similar=similar)
         others = ", ".join(f"`{other}`" for other in self._taking_only(name)) if owners else ""
@@ -120,6 +122,12 @@ class Values:
             owner for owner, identifier, _ in self._reader.enum_owners(key(value)) if identifier == value
         ]
         return owners if len(owners) < _FEW and all("(" not in owner for owner in owners) else []
+
+    def _taking_beside(self, owners: Sequence[str], value: str) -> list[str]:
+        """The properties that take a value, of the class of the likeliest owner."""
+        cls = owners[0].rpartition(".")[0] if owners and "(" not in owners[0] else ""
+        named = self._reader.enum_owners(key(value)) if cls else ()
+        return [owner for owner, item, _ in named if item == value and owner.rpartition(".")[0] == cls]
 
     def _lost_value(self, owners: Iterable[str], value: str) -> RemovedSymbol | None:
         """A value that the likeliest owners took in other versions; where several did, one of which the successor is

@@ -17,6 +17,11 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
 
 _FEW = 3
+# Parts whose members say what the same names are worth there, how it is drawn, or what is done with it: the weight of
+# gravity, the size of a baked image. None of them is what the name means of the thing.
+_OF_OTHER_USE = frozenset({"EffectorWeights", "BakeSettings", "VolumeDisplay", "ParticleSettingsTextureSlot"})
+# A tree, of which every node is called, placed and drawn: of its nodes only these are asked of what it belongs to.
+_TREE, _SOCKETS = "NodeTree", frozenset({"inputs", "outputs"})
 _COUNTS = 1.0  # the weight from which on the data of an object are likely meant by a member of theirs
 
 
@@ -45,12 +50,15 @@ def members_within(owner: str, name: str, reader: BaseReader, *, on_new: bool = 
         member: f"Its `.{one.name}` has it: `.{one.name}.{name}` (`{member.path}`)."
         for one in pointers
         if (member := _own_of(f"{TYPES}{one.target}", name, reader))
+        and not (member.kind == "function" and reader.descends(f"{TYPES}{one.target}", ID))
     }
     for member, note in (*_of_data(owner, name, reader), *_of_collections(members, name, reader)):
         found.setdefault(member, note)
     if not found and not on_new:
         for one in pointers:
-            beyond = members_of(f"{TYPES}{one.target}", reader) if one.is_read_only else []
+            if not one.is_read_only or (one.target.endswith(_TREE) and name not in _SOCKETS):
+                continue
+            beyond = members_of(f"{TYPES}{one.target}", reader)
             for member, note in _of_collections(beyond, name, reader, f".{one.name}"):
                 found.setdefault(member, note)
     if not found and (beside := _beside(owner, name, reader)):
@@ -79,7 +87,10 @@ def _is_part(pointer: SymbolEntry, owner: str, held: set[str], reader: BaseReade
     """
     target = f"{TYPES}{pointer.target}"
     return bool(pointer.target) and not (
-        reader.descends(target, OBJECT) or reader.descends(owner, target) or pointer.target in held
+        pointer.target in _OF_OTHER_USE
+        or reader.descends(target, OBJECT)
+        or reader.descends(owner, target)
+        or pointer.target in held
     )
 
 
@@ -102,15 +113,18 @@ def _of_collections(
 ) -> Iterator[Within]:
     """Members of collections of a class of their own (``objects.active``), and of the elements of collections."""
     for one in members:
-        if one.type != "collection" or not one.target:
+        if one.type != "collection" or not one.target or one.target in _OF_OTHER_USE:
             continue
         own = _own_of(f"{TYPES}{one.collection}", name, reader) if one.collection else None
         if own and own.owner == f"{TYPES}{one.collection}":
             access = f"{before}.{one.name}"
             yield Within(own, f"Its `{access}` has it: `{access}.{name}` (`{own.path}`).")
-        elif not reader.descends(f"{TYPES}{one.target}", ID) and (
-            element := of_elements(one, name, reader, before)
-        ):
+            continue
+        element = (
+            None if reader.descends(f"{TYPES}{one.target}", ID) else of_elements(one, name, reader, before)
+        )
+        # What is done to each element further on is not done to the thing.
+        if element and not (before and element.member.kind == "function"):
             yield element
 
 

@@ -15,7 +15,11 @@ _MAX_BUILTINS = 12
 _MAX_VALUES = 8
 _HUMP = re.compile(r"[a-z0-9][A-Z]")
 _IDENTIFIER = re.compile(r"(?<!\w)[^\W\d]\w*")  # not what follows the digit of ``3D_POLYLINE``
-_DOT = re.compile(r"\s*(?:\.|->|::|→)\s*(?=[^\W\d])")
+# An arrow leads to a member too, but not to what a line came to: ``ob.data -> None``, ``→ IndexError``.
+_OUTCOME = (
+    r"\w*(?:Error|Exception|Warning)\b|None\b|True\b|False\b|(?:list|dict|tuple|set|str|int|float|bool)\b"
+)
+_DOT = re.compile(rf"\s*(?:\.|::|(?:->|→)(?!\s*(?:{_OUTCOME})))\s*(?=[^\W\d])")
 _ASSIGNMENT = re.compile(r"\s*[-+*/|&^%]?=(?!=)")
 _VALUE = re.compile(r"\s*(?:[-+*/|&^%=!]?=|not\s+in\b|in\b)\s*(?=['\"{(\[])")
 _NUMBER = r"-?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"

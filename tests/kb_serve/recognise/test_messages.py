@@ -209,7 +209,7 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
         ),
         (
             "mesh.materials[1] = mat\nIndexError: bpy_prop_collection[index] = value: index 1 out of range, size 1",
-            "has only 1, counted from 0: there is no `[1]` yet. `.materials.append()` adds one.",
+            "has only 1, counted from 0: there is no `[1]` yet. `.materials.append(material)` adds one.",
         ),
         ("IndexError: bpy_prop_collection[index]: index 0 out of range, size 0", "there is no `[0]` yet."),
         (
@@ -515,7 +515,7 @@ def test_a_key_of_the_node_at_hand_is_one_that_it_lost(kb: KnowledgeBase, query:
             'TypeError: bpy_struct: item.attr = val: enum "HAIR" not found in '
             "('NONE', 'HALO', 'LINE', 'PATH', 'OBJECT', 'COLLECTION')",
             "bpy.types.ParticleSettings.render_type",
-            [],
+            ["`HAIR` is a value of `bpy.types.ParticleSettings.type`."],
         ),
     ],
 )

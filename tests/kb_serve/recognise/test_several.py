@@ -49,8 +49,10 @@ def test_later_parts_are_about_the_object_of_the_first() -> None:
     ("query", "topics"),
     [
         ("create an action and assign it", ["create an action", ""]),
-        ("make a cube fall and bake it", ["make a cube fall", "bake it"]),
+        ("make a cube fall and bake it", ["make a cube fall", "bake a cube fall"]),
         ("create a material and assign it to the cube", ["create a material", "assign it to the cube"]),
+        ("simulate smoke and bake it", ["simulate smoke", "bake smoke"]),
+        ("make a curve and animate it", ["make a curve", ""]),
     ],
 )
 def test_a_bare_verb_of_what_the_first_part_is_about_is_no_topic(query: str, topics: list[str]) -> None:

@@ -31,7 +31,8 @@ OBJECTS = (
     NamelessMessage(
         ("Object '", "not in collection '"),
         (f"{T}CollectionObjects.unlink", f"{T}Object.users_collection"),
-        "It is in others: `for collection in obj.users_collection: collection.objects.unlink(obj)`.",
+        "Unlink it only where it is: `if obj.name in collection.objects:`. `obj.users_collection` are the collections "
+        "that it is in, none while it is new; unlinked from all of them, it is in no scene.",
     ),
     NamelessMessage(
         ("has no evaluated mesh data",),

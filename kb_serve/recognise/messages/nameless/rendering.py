@@ -54,6 +54,13 @@ RENDERING = (
         "Select the objects first (`obj.select_set(True)`), and make one active.",
     ),
     NamelessMessage(
+        (" not found in ('CPU', 'GPU')",),
+        ("bpy.types.CyclesRenderSettings.device", "bpy.types.CyclesPreferences.compute_device_type"),
+        "The scene is told that a graphics card computes, the preferences by what: `scene.cycles.device = 'GPU'`; "
+        "`prefs = bpy.context.preferences.addons['cycles'].preferences`; `prefs.compute_device_type = 'CUDA'` (or "
+        "OPTIX, HIP, METAL, ONEAPI); `prefs.get_devices()`; `for device in prefs.devices: device.use = True`.",
+    ),
+    NamelessMessage(
         ("Bake failed: no Fluid modifier found",),
         ("bpy.ops.fluid.bake_all",),
         "The active object must be the fluid's domain: `view_layer.objects.active = domain`.",
