@@ -42,6 +42,8 @@ _OPTIONAL = re.compile(r"\(optional\b|^Optional\b")
 _CONTINUED = re.compile(r"\s*\\\s*\n\s*")
 _LITERAL = re.compile(r"\bLiteral(\[[^\[\]]*\])")
 _LISTED = re.compile(r"\b(?:enum|string|str) in ([\[{(][^\[\]{}()]*[\]})])", re.IGNORECASE)
+_ELEMENT = re.compile(r"(?:bmesh\.types\.)?BM(?:Vert|Edge|Face)")
+_SEVERAL = re.compile(r"sequence of\b|the (?:verts|edges|faces)\b", re.IGNORECASE)
 _BMESH_ELEMENTS = {"vert": "BMVert", "verts": "BMVert", "edges": "BMEdge", "faces": "BMFace"}
 _REFERENCE_ROLES = ("class", "func", "meth", "attr", "data", "mod", "exc", "const", "obj", "doc")
 _TWO_STOPS = re.compile(r"(?<!\.)\.\.$")  # of a sentence that was put before another full stop
@@ -396,12 +398,19 @@ def _parameters(signature: str, fields: _Fields) -> tuple[Parameter, ...]:
             replace(
                 parameter,
                 description=(text := fields.texts.get(parameter.name, "")),
-                type=fields.types.get(parameter.name, "") or parameter.type,
+                type=_of_several(fields.types.get(parameter.name, ""), text) or parameter.type,
                 required=parameter.required and not _OPTIONAL.search(text),
             )
         )
         for parameter in parameters.values()
     )
+
+
+def _of_several(kind: str, description: str) -> str:
+    """A type, which is a sequence's where the description says that it is one: some docstrings name only the class of
+    its elements.
+    """
+    return f"Sequence[{kind}]" if _ELEMENT.fullmatch(kind) and _SEVERAL.match(description) else kind
 
 
 def _bmesh_result(slot: Parameter) -> Parameter:

@@ -15,6 +15,7 @@ from kb_build.flow.types import (
     ClassObject,
     Instance,
     LocalClass,
+    LocalFunction,
     LocalInstance,
     Mapping,
     Module,
@@ -222,9 +223,12 @@ class Assignments(Guards, Annotations):
     def _store_on_instance(self, owner: LocalInstance, name: str, kind: Type) -> None:
         if self.is_declared_in(owner.number, name):
             return
-        if self.class_attribute(owner.number, name) is None:
+        found = self.class_attribute(owner.number, name)
+        held = found[0] if found else UNKNOWN
+        if isinstance(held, LocalFunction) and self.functions[held.number].is_property:
+            return  # its setter takes the value
+        if found is None:
             bases, _ = self.api_bases(owner.number)
             if any(self.api.member(base, name) for base in bases):
                 return
-        found = self.class_attribute(owner.number, name)
         self.classes[found[1] if found else owner.number].bind(name, general(kind))

@@ -13,6 +13,7 @@ from kb_build.flow.trees import children
 from kb_build.flow.types import UNKNOWN, ClassObject, LocalClass, LocalFunction, Plain, Type, general, literal
 from kb_build.symbols.api_names import TYPES as T
 
+_KEEPING = frozenset({"persistent", "cache", "lru_cache"})  # decorators of functions that do the same
 _MOST_CLASSES = 1_000  # of one script; which ones later classes are mixed into is not asked
 
 
@@ -40,7 +41,9 @@ class Defining(Expressions):
                     function.is_property = True
                 case ast.Attribute(attr="setter" | "getter" | "deleter"):
                     return True
-                case ast.Attribute(attr="persistent") | ast.Name(id="persistent"):
+                case ast.Attribute(attr=name) | ast.Name(id=name) if name in _KEEPING:
+                    pass
+                case ast.Call(func=ast.Attribute(attr="lru_cache") | ast.Name(id="lru_cache")):
                     pass
                 case _:
                     kind = UNKNOWN if cls is None else kind

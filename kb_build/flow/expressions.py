@@ -28,12 +28,14 @@ from kb_build.flow.types import (
     FromProperty,
     Instance,
     LocalFunction,
+    LocalInstance,
     Mapping,
     Plain,
     Sequence,
     Tuple,
     Type,
     Union,
+    Unknown,
     join,
     literal,
     literal_text,
@@ -165,6 +167,12 @@ class Expressions(Members):
             return Sequence("list", self.iterated(owner))
         if isinstance(owner, (Sequence, Plain)):
             return Plain(owner.kind) if isinstance(owner, Plain) else owner
+        if isinstance(owner, Union):
+            return union(self._sliced(member, part) for member in owner.members)
+        if isinstance(
+            owner, (Unknown, LocalInstance)
+        ):  # a text, an array, what a class of the script's own gives
+            return UNKNOWN
         return Sequence("list", self.iterated(owner))
 
     # Literals.

@@ -38,6 +38,10 @@ ADDONS = frozenset(
     }
 )  # fmt: skip
 
+# Modules that Blender brings.
+API_MODULES = frozenset({"bpy", "mathutils", "bmesh", "gpu", "gpu_extras", "bpy_extras", "blf", "aud", "freestyle",
+                         "bl_math", "idprop", "imbuf", "addon_utils", "bl_keymap_utils", "nodeitems_utils",
+                         "rna_keymap_ui", "rna_prop_ui"})  # fmt: skip
 # Modules that Python has lost → the Blender that first brings such a Python, that Python, and what to use.
 LOST_MODULES = {
     "binhex": ((4, 1), "3.11", "binascii"),

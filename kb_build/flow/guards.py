@@ -7,27 +7,31 @@ way out; behind one that is not decided, everything is *doubted*, or the names t
 from __future__ import annotations
 
 import ast
+from functools import reduce
+from operator import or_
 from typing import TYPE_CHECKING
 
 from kb_build.flow.doubts import CHOSEN, EVERYTHING, NO_DOUBTS, Doubts, as_doubts, as_source, without
 from kb_build.flow.expressions import Expressions, is_decided
 from kb_build.flow.trees import children, walk
-from kb_build.flow.type_parts import telling, tells
+from kb_build.flow.type_parts import is_computed, telling, tells
 from kb_build.flow.types import (
     UNKNOWN,
     FromNames,
+    Instance,
     LocalFunction,
     Mapping,
+    Module,
     Plain,
     Sequence,
     Telling,
     Tuple,
     Type,
-    Union,
     literal,
     literal_text,
     members,
 )
+from kb_build.symbols.api_names import OPERATORS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -43,9 +47,47 @@ class Guards(Expressions):
         kind = self.here.types.get(test, UNKNOWN)
         if not is_decided(kind):
             found = self.asked(test, chooses=True) if asked is None else asked
-            self.doubt_here(found | without(test, holds=holds))
+            self.doubt_here(found | without(test, holds=holds) | self._of_another(test, holds=holds))
         elif literal(kind) is not holds:
             self.doubt_here(EVERYTHING)
+
+    def _of_another(self, test: ast.expr, *, holds: bool) -> Doubts:
+        """Everything, where a condition finds a member that a class has in another Blender only, or lacks one that it
+        has in this one.
+        """
+        match test:
+            case ast.UnaryOp(op=ast.Not(), operand=operand):
+                return self._of_another(operand, holds=not holds)
+            case ast.BoolOp(op=operator, values=sides) if isinstance(operator, ast.And) is holds:
+                return reduce(or_, (self._of_another(side, holds=holds) for side in sides))
+            case ast.Call(func=ast.Name(id="hasattr"), args=[owner, ast.Constant(value=str(name))]):
+                return self._of_another_with(owner, name, has=holds)
+            case ast.Compare(
+                left=ast.Constant(value=str(name)),
+                ops=[ast.In() | ast.NotIn() as operator],
+                comparators=[ast.Call(func=ast.Name(id="dir"), args=[owner])],
+            ):
+                return self._of_another_with(
+                    owner, name, has=isinstance(operator, ast.In) is holds, listed=True
+                )
+            case _:
+                return NO_DOUBTS
+
+    def _of_another_with(self, owner: ast.expr, name: str, *, has: bool, listed: bool = False) -> Doubts:
+        """Everything, where something has a name, or lacks it, in another Blender and not in this one.
+        Modules of operators have every name, and list those that are there.
+        """
+        for kind in members(self.here.types.get(owner, UNKNOWN)):
+            match kind:
+                case Instance(cls=path):
+                    is_there = self.api.member(path, name) is not None
+                case Module(path=path) if listed or not f"{path}.".startswith(OPERATORS):
+                    is_there = self.api.symbols.symbol(f"{path}.{name}") is not None
+                case _:
+                    continue
+            if is_there is not has and (is_there or self.api.had(path, name)):
+                return EVERYTHING
+        return NO_DOUBTS
 
     def asked(self, node: ast.expr, *, chooses: bool = False) -> Doubts:
         """What becomes doubted by what an expression, which was read, asks without being decided.
@@ -140,9 +182,10 @@ def assigned_names(statements: Iterable[ast.stmt]) -> list[str]:
 
 
 def _may_tell(kind: Type) -> bool:
-    return isinstance(kind, Plain) or (
-        isinstance(kind, Union) and any(isinstance(member, Plain) for member in kind.members)
-    )
+    """Whether a value can tell of this Blender: a plain one, one of several such, or a row of computed ones."""
+    if isinstance(kind, Sequence):
+        return is_computed(kind.element)
+    return any(isinstance(member, Plain) for member in members(kind))
 
 
 def _reads_version(function: ast.AST) -> bool:

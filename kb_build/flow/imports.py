@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import LOST_MODULES
+from kb_build.flow.facts import API_MODULES, LOST_MODULES
 from kb_build.flow.members import Members
 from kb_build.flow.types import UNKNOWN, LocalModule, Module, Type
 
 if TYPE_CHECKING:
     import ast
     from collections.abc import Iterable
-
-_API_MODULES = frozenset({"bpy", "mathutils", "bmesh", "gpu", "gpu_extras", "bpy_extras", "blf", "aud", "freestyle",
-                          "bl_math", "idprop", "imbuf", "addon_utils", "bl_keymap_utils", "nodeitems_utils",
-                          "rna_keymap_ui", "rna_prop_ui"})  # fmt: skip
 
 
 class Imports(Members):
@@ -24,7 +20,7 @@ class Imports(Members):
         """Reads ``import a.b as c``."""
         for alias in node.names:
             top = alias.name.partition(".")[0]
-            known = top in _API_MODULES
+            known = top in API_MODULES
             whole = self._module(alias.name) if known else UNKNOWN
             if known and whole is UNKNOWN and "." in alias.name:
                 self.resolve(alias, "name", alias.name, missing=(alias.name,))
@@ -42,7 +38,7 @@ class Imports(Members):
     def read_import_from(self, node: ast.ImportFrom) -> bool:
         """Reads ``from a import b as c``."""
         module = node.module or ""
-        known = not node.level and module.partition(".")[0] in _API_MODULES
+        known = not node.level and module.partition(".")[0] in API_MODULES
         owner = (
             self._module(module) if known else self.local_module(self.here.file.imported(node.level, module))
         )

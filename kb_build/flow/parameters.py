@@ -107,7 +107,7 @@ class Parameters(Contradictions, Annotations):
     def _by_convention(self, function: FunctionDefinition, name: str) -> Type:
         """The type that everyone's parameters of this name have, if the function uses it so."""
         cls = T + PARAMETERS.get(name, "")
-        if not self.api.is_class(cls):
+        if not self.api.is_class(cls) or self.here.file.is_without_blender:
             return UNKNOWN
         if function.used is None:
             function.used = _used_names(function.node)

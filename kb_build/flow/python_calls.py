@@ -138,7 +138,11 @@ class PythonCalls(ScriptCalls):
         element = self.iterated(values)
         if isinstance(function, LocalFunction):
             self.pass_to(function.number, [element], {})
-        return element if keep else UNKNOWN
+        if keep:
+            return element
+        if isinstance(function, Builtin) and function.receiver is None:
+            return _PLAIN_RESULTS.get(function.name, UNKNOWN)
+        return UNKNOWN
 
     def _class_of(self, kind: Type) -> Type:
         if isinstance(kind, Instance):

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import DISCRIMINANTS
+from kb_build.flow.facts import API_MODULES, DISCRIMINANTS
 from kb_build.flow.scopes import Scope
 from kb_build.flow.shared_names import SharedNames, shared_names
 from kb_build.flow.trees import walk
@@ -78,6 +78,21 @@ class SourceFile:
     def computes_attributes(self) -> bool:
         """Whether it may set attributes of its own things whose names it does not write down."""
         return any(map(_computes_attributes, self.nodes))
+
+    @cached_property
+    def is_without_blender(self) -> bool:
+        """Whether it imports something, and no module that Blender brings: what it calls a scene may be any. A star may
+        bring one.
+        """
+        imported: set[str] = set()
+        for node in self.nodes:
+            if isinstance(node, ast.Import):
+                imported.update(alias.name.partition(".")[0] for alias in node.names)
+            elif isinstance(node, ast.ImportFrom):
+                if any(alias.name == "*" for alias in node.names):
+                    return False
+                imported.add("." if node.level else (node.module or "").partition(".")[0])
+        return bool(imported) and imported.isdisjoint(API_MODULES)
 
     @cached_property
     def moves_imports(self) -> bool:

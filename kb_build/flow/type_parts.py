@@ -137,13 +137,21 @@ def tells(kind: Type) -> Telling | None:
     return None
 
 
+def is_computed(kind: Type) -> bool:
+    """Whether a plain value was computed: its literal is not known."""
+    return isinstance(kind, Plain) and kind.value is None
+
+
 def telling(kind: Type, source: Telling | None, *, value: bool = False) -> Type:
     """A plain type as one that tells of this Blender, by ``source`` if any; its literal stays with ``value``.
 
-    A list or a dictionary stays as it is, and so do what it holds: they are not all chosen by what was told.
+    A list or a dictionary stays as it is, and so do what it holds: they are not all chosen by what was told. Only what
+    a row of computed values gives was: the numbers of a version.
     """
     if source is None:
         return kind
+    if isinstance(kind, Sequence) and is_computed(kind.element):
+        return Sequence(kind.kind, telling(kind.element, source))
     if isinstance(kind, Union):
         return with_parts(kind, partial(telling, source=source))
     if isinstance(kind, Plain) and (kind.source is None or kind.source is PASSED):

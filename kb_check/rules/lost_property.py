@@ -45,7 +45,7 @@ _ANNOTATIONS = "__annotations__"
 
 def _check(script: Script) -> Iterator[Finding]:
     classes = own_classes(script)
-    if not classes or any(node.attr == _ANNOTATIONS for node in script.all(ast.Attribute)):
+    if not classes or _changes_annotations(script):
         return
     for own in classes:
         for statement in own.node.body:
@@ -59,6 +59,13 @@ def _check(script: Script) -> Iterator[Finding]:
                 case _:
                     pass
     yield from _given_later(script)
+
+
+def _changes_annotations(script: Script) -> bool:
+    """Whether the script has the annotations of classes anywhere: as an attribute, or by the text that is its name."""
+    return any(node.attr == _ANNOTATIONS for node in script.all(ast.Attribute)) or any(
+        node.value == _ANNOTATIONS for node in script.all(ast.Constant)
+    )
 
 
 def _given_later(script: Script) -> Iterator[Finding]:

@@ -76,6 +76,14 @@ _STEPPED = (
     "Rigid and soft bodies are simulated from one frame to the next: `for frame in range(scene.frame_start, 51): "
     "scene.frame_set(frame)`. A jump to frame 50 leaves them where they were, and cloth somewhat elsewhere."
 )
+_IN_ZONES = (
+    "Simulations of geometry nodes are no point caches: `bpy.ops.object.simulation_nodes_cache_bake(selected=True)` "
+    "bakes those of the selected objects."
+)
+_TYPED = (
+    "`body` takes no keyframes. A handler sets it: `bpy.app.handlers.frame_change_pre.append(function)`, which gets "
+    "the scene."
+)
 _ADDED_TO_WORLD = (
     "`bpy.ops.rigidbody.world_add()` leaves the `collection` and the `constraints` of the world None. After "
     '`scene.rigidbody_world.collection = bpy.data.collections.new("Bodies")` a script needs no selection: '
@@ -219,6 +227,16 @@ ADVICE: tuple[Advice, ...] = (
             _stems("after at get jump not only position read result skip step through without"),
         ),
     ),
+    Advice(
+        _STEPPED,
+        wherever=(
+            _stems("bodies body cloth rigid rigidbody soft"),
+            _stems("don doesn never no not nothing still"),
+            _stems("fall happen happens move moves run runs simulate"),
+        ),
+    ),
+    Advice(_IN_ZONES, frozenset({"bpy.ops.ptcache.bake_all"}), asked=_stems("geometry node nodes zone")),
+    Advice(_TYPED, _of("TextCurve.body"), asked=_stems("animate change counter frame keyframe over time")),
     Advice(
         _ADDED_TO_WORLD,
         _of("RigidBodyWorld.collection", "RigidBodyWorld.constraints"),

@@ -17,6 +17,7 @@ _NO_LABEL = frozenset({"node", "nodes"})
 _JOINS = _NO_LABEL | {"and"}
 _MARKS = ".,:;?!()'\"`"
 _OF_TEXTURES = f"{TYPES}TextureNode"
+_SYSTEM = ("geometry", "nodes")  # which trees a question is of, no node called Geometry
 _LONGEST = 4  # words of a label
 _MOST_WORDS = 20  # with more of them it is no question about nodes alone
 
@@ -46,6 +47,8 @@ def _spans(said: Sequence[str]) -> Iterator[tuple[int, int]]:
     for start in range(len(said)):
         for end in range(min(len(said), start + _LONGEST), start, -1):
             is_long = end - start > 1
+            if tuple(said[start : end + 1]) == _SYSTEM:
+                continue
             if _NO_LABEL.isdisjoint(said[start:end]) and (
                 is_long or not _JOINS.isdisjoint(said[end : end + 1])
             ):

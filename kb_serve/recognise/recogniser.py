@@ -8,7 +8,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, tokens
-from kb_build.symbols.api_names import ID, OPERATORS, TYPES
+from kb_build.symbols.api_names import ID, NODE, OPERATORS, TYPES
 from kb_build.symbols.paths import last_name, plain_path, socket_node
 from kb_serve.recognise.code.contexts import NO_OVERRIDE, OVERRIDE
 from kb_serve.recognise.code.expressions import Expressions
@@ -70,6 +70,7 @@ _OWNER_OF_REMOVED = 0.85  # … one whose removed member has no known successor
 _LIKELY = 1.1
 _LIKELY_GUESS = 0.88
 _GUESS = 0.83
+_ZONE_START, _ZONE_END = "Input", "Output"  # the last words of the classes of nodes that are made in pairs
 _SOCKET_VALUE = "The value of a socket is its `default_value`: `node.inputs[…].default_value = …`."
 _UNKNOWN_MODULE = (
     "The build of Blender {version} behind this base has no module `{module}`; other builds may have it."
@@ -315,10 +316,18 @@ class Recogniser:
             self._like_nothing(missing, names, recognition)
 
     def _input(self, missing: MissingName) -> str:
-        """The path of the input of a node that is called as what it lacks; empty for none."""
-        members = self._reader.members(missing.owner).items() if missing.owner else ()
-        inputs = (one for name, one in members if name.startswith("inputs["))
-        return next((one.path for one in inputs if key(one.label) == key(missing.name)), "")
+        """The path of the input of a node that is called as what it lacks, or of the node where a zone begins that ends
+        with it; empty for none.
+        """
+        owner = self._reader.entry(missing.owner)
+        if owner is None or not self._reader.descends(owner.path, NODE):
+            return ""
+        start = owner.path.removesuffix(_ZONE_END) + _ZONE_START if owner.path.endswith(_ZONE_END) else ""
+        for node in filter(None, (owner.path, start)):
+            for name, member in self._reader.members(node).items():
+                if name.startswith("inputs[") and key(member.label) == key(missing.name):
+                    return member.path
+        return ""
 
     def _like_nothing(self, missing: MissingName, names: list[str], recognition: Recognition) -> None:
         """Adds the members that begin with a name's first word or shorten it, and the name on other classes or the

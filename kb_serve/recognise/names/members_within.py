@@ -129,12 +129,21 @@ def _of_collections(
 
 
 def _beside(owner: str, name: str, reader: BaseReader) -> Within | None:
-    """The member of an object with such data, or of what has such a thing under its name (``PoseBone.bone``)."""
+    """The member of an object with such data, of what alone has such a thing or has it under its name
+    (``PoseBone.bone``), or of another part of what alone has it.
+    """
     if reader.is_object_data(owner) and (member := _own_of(OBJECT, name, reader)):
         return Within(member, f"The object that has such data has it: `obj.{name}` (`{member.path}`).")
     cls = owner.removeprefix(TYPES)
-    for one in reader.pointing_at(cls):
-        if key(one.name) == key(cls) and one.is_read_only and (member := _own_of(one.owner, name, reader)):
+    holding = [one for one in reader.pointing_at(cls) if one.is_read_only and not reader.descends(owner, ID)]
+    is_alone = len({one.owner for one in holding}) == 1
+    for one in holding:
+        if (key(one.name) == key(cls) or is_alone) and (member := _own_of(one.owner, name, reader)):
             holder = one.owner.removeprefix(TYPES)
             return Within(member, f"`{holder}` has it (`{member.path}`): this is its `.{one.name}`.")
+    for part in reader.members(holding[0].owner).values() if is_alone else ():
+        is_part = part.type == "pointer" and part.is_read_only and part.target not in {cls, *_OF_OTHER_USE}
+        if is_part and (member := _own_of(f"{TYPES}{part.target}", name, reader)) and member.owner != ID:
+            beside = f"`.{part.name}`, which stands beside this `.{holding[0].name}`"
+            return Within(member, f"{beside}, has it (`{member.path}`).")
     return None

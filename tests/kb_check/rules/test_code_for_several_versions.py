@@ -69,9 +69,101 @@ READY = {
         if bpy.app.build_options.usd:
             print(bpy.ops.wm.usd_export)
     """,
+    "a member of another class than the one that is asked for": """
+        action = bpy.data.actions.new("x")
+        animated = bpy.context.object.animation_data_create()
+        animated.action = action
+        if hasattr(action, "slots"):
+            animated.action_slot = action.slots.new(id_type='OBJECT', name="x")
+    """,
+    "what goes with a member that a parameter lacks": """
+        def nodes(scene):
+            if not hasattr(scene, "compositing_node_group"):
+                return scene.node_tree
+        nodes(scene)
+    """,
+    "what goes with a class": """
+        if hasattr(bpy.types, "CompositorNodeComposite"):
+            print(scene.node_tree)
+    """,
+    "what follows a reading that may fail": """
+        def curves(action):
+            try:
+                return action.fcurves
+            except AttributeError:
+                pass
+            return action.layers
+        curves(bpy.data.actions.new("x"))
+    """,
+    "what follows a reading after which all is done": """
+        def group():
+            try:
+                found = scene.compositing_node_group
+            except Exception:
+                pass
+            else:
+                return found
+            return scene.node_tree
+        group()
+    """,
+    "operators beside one that is listed": """
+        if "addon_disable" in dir(bpy.ops.wm):
+            bpy.ops.wm.addon_refresh()
+    """,
+    "numbers of the version's text": """
+        major, minor = map(int, bpy.app.version_string.split(".")[:2])
+        print(scene.node_tree if major < 5 else scene.compositing_node_group)
+    """,
+    "parts of the version's text": """
+        parts = bpy.app.version_string.split(".")
+        if int(parts[0]) < 5:
+            print(scene.node_tree)
+    """,
+    "numbers of the version in a list": """
+        numbers = [int(part) for part in bpy.app.version]
+        if numbers[0] < 5:
+            print(scene.node_tree)
+    """,
+    "a function of the version whose results are kept": """
+        import functools
+        @functools.lru_cache
+        def is_new():
+            return bpy.app.version >= (5, 0)
+        if not is_new():
+            print(scene.node_tree)
+    """,
+    "parts of a text that is passed": """
+        def call(thing, text):
+            thing.name = text[:63]
+        call(scene, bpy.context.object.name)
+    """,
+    "sequences of a mesh's elements": """
+        import bmesh
+        bm = bmesh.new()
+        verts = [bm.verts.new((x, x * x, 0)) for x in range(4)]
+        one, other = bm.faces.new(verts[:3]), bm.faces.new([verts[0], verts[2], verts[3]])
+        bm.faces.get(verts[:3])
+        bm.edges.get(verts[:2])
+        bmesh.utils.face_join([one, other])
+        bmesh.utils.vert_separate(verts[0], verts[0].link_edges[:])
+    """,
 }
 # What refuses in every Blender, though something is asked.
 WRONG = {
+    "a part of a list": "scene.frame_end = [1, 2][:1]",
+    "a name beside one that each class has": """
+        if hasattr(scene, "render"):
+            scene.no_such_name
+    """,
+    "what follows a call that may fail": """
+        def made():
+            try:
+                return bpy.data.objects["No such object"]
+            except KeyError:
+                pass
+            return bpy.data.no_such_name
+        made()
+    """,
     "a socket that is used at once": 'node.inputs.get("Specula").default_value = 1',
     "a socket that nothing asks for": """
         socket = node.inputs.get("Specula")

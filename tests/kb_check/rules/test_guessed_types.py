@@ -10,6 +10,8 @@ from statements_in_blender import run_statements
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from conftest import Check
+
     from kb_check.checker import Checker
 
 _BY_NAME = {
@@ -53,3 +55,43 @@ def test_what_is_surely_an_instance_is_still_refused(rule_checker: Checker, tmp_
     refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
     found = rule_checker.check("\n".join(lines))
     assert [one.span.line for one in found] == refused == [3, 4, 5]
+
+
+_SCENE = "def size(scene):\n    return scene.render.resolution\n"
+
+
+@pytest.mark.parametrize(
+    ("imports", "is_reported"),
+    [
+        ("", True),
+        ("import bpy\n", True),
+        ("import math\nfrom mathutils import Vector\n", True),
+        ("from .ui import *\n", True),
+        ("import math\n", False),
+        ("from __future__ import annotations\nfrom .specs import Shape\n", False),
+    ],
+)
+def test_a_scene_is_blenders_where_something_of_blender_is_imported(
+    check: Check, imports: str, *, is_reported: bool
+) -> None:
+    assert bool(check("unknown-attribute", imports + _SCENE)) is is_reported
+
+
+def test_what_a_setter_takes_is_not_what_the_property_gives(check: Check) -> None:
+    code = """
+import blf
+class Label:
+    def __init__(self):
+        self._font = 0
+    @property
+    def font(self):
+        return self._font
+    @font.setter
+    def font(self, value):
+        self._font = blf.load(value)
+label = Label()
+label.font = "Sans"
+blf.size(label.font, {size})
+"""
+    assert not check("wrong-type", code.format(size=12))
+    assert check("wrong-type", code.format(size="'12'"))

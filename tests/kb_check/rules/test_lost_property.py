@@ -100,6 +100,8 @@ def test_what_is_lost_is_reported_and_nothing_else(check: Check, tmp_path: Path)
         "class Group(bpy.types.PropertyGroup):\n    count = 3\n    size: int",
         "class Group(bpy.types.PropertyGroup):\n    count = IntProperty()\n"
         "Group.__annotations__ = {'count': Group.count}",
+        "class Group(bpy.types.PropertyGroup):\n    count = IntProperty()\n"
+        "Group.__dict__['__annotations__']['count'] = Group.count",
     ],
 )
 def test_what_is_no_lost_property_is_left_alone(check: Check, code: str) -> None:

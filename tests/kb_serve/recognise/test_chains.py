@@ -70,6 +70,20 @@ def test_a_full_stop_between_sentences_is_no_attribute() -> None:
     assert [chain.steps for chain in find_chains("It is a cube. 3 faces")] == [()] * 5
 
 
+@pytest.mark.parametrize(
+    ("text", "dotted"),
+    [
+        ("ob->data->vertices", "ob.data.vertices"),
+        ("Scene → frame_end", "Scene.frame_end"),
+        ("bpy.context.object -> None", "bpy.context.object"),
+        ("mesh.vertices → IndexError: no elements", "mesh.vertices"),
+        ("fcurve.keyframe_points -> list of keys", "fcurve.keyframe_points"),
+    ],
+)
+def test_an_arrow_leads_to_a_member_but_not_to_what_a_line_came_to(text: str, dotted: str) -> None:
+    assert find_chains(text)[0].dotted == dotted
+
+
 def test_a_page_of_code_is_read_up_to_a_limit_and_fast() -> None:
     code = "\n".join(f"obj{n}.modifiers['M{n}'].settings.quality = {n}" for n in range(5_000))
     start = time.process_time()

@@ -66,6 +66,14 @@ def test_a_failed_poll_says_what_helps(kb: KnowledgeBase, path: str, said: str) 
     assert said in note
 
 
+def test_a_call_keeps_the_arguments_that_it_was_made_with(kb: KnowledgeBase) -> None:
+    call = "bpy.ops.anim.keyframe_insert(type='Location')"
+    message = "RuntimeError: Operator bpy.ops.anim.keyframe_insert.poll() failed, context is incorrect"
+    assert f": {call}`" in kb.query(f"{call}\n{message}").notes[0]
+    by_place = kb.query(f"bpy.ops.anim.keyframe_insert('INVOKE_DEFAULT')\n{message}")
+    assert ": bpy.ops.anim.keyframe_insert()`" in "\n".join(by_place.notes)
+
+
 def test_a_poll_that_names_what_its_like_want_says_so(kb: KnowledgeBase) -> None:
     message = (
         "RuntimeError: Operator bpy.ops.asset.clear.poll() No data-block selected that is marked as asset"

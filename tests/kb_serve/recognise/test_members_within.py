@@ -24,6 +24,9 @@ FOUND = {
     ("Bone", "constraints"): ("this is its `.bone`", "PoseBone.constraints"),
     ("Text", "body"): (".lines[0].body", "TextLine.body"),
     ("Key", "value"): (".key_blocks[0].value", "ShapeKey.value"),
+    ("ClothSettings", "distance_min"): (".collision_settings", "ClothCollisionSettings.distance_min"),
+    ("RenderSettings", "frame_start"): ("this is its `.render`", "Scene.frame_start"),
+    ("RigidBodyWorld", "gravity"): ("this is its `.rigidbody_world`", "Scene.gravity"),
 }
 
 
@@ -40,13 +43,21 @@ def test_the_very_name_is_found_one_step_on(kb: KnowledgeBase, owner: str, name:
     ("owner", "name"),
     [
         ("PoseBone", "select_set"),
+        ("AreaLight", "width"),  # at which each node of its tree is drawn
+        ("RenderSettings", "width"),  # of a baked image
+        ("ParticleSettings", "object"),  # of a texture's coordinates
+        ("Object", "translate"),  # a pose's bone
+        ("ShaderNodeTexImage", "reload"),
+        ("EffectorWeights", "strength"),
         ("Scene", "lens"),
         ("Object", "empty_display_sizes"),
         ("Collection", "select_set"),
     ],
 )
 def test_what_is_another_thing_has_no_part_in_it(reader: BaseReader, owner: str, name: str) -> None:
-    """The object that is a bone's shape, a scene's camera, a collection's objects."""
+    """The object that is a bone's shape, a scene's camera, a collection's objects, what is said of the same for another
+    use.
+    """
     assert members_within(f"{T}{owner}", name, reader) == []
 
 
@@ -105,3 +116,18 @@ def test_blender_has_what_is_told_where_it_is_told() -> None:
     for name, thing in had.items():
         assert hasattr(thing, name)
         assert not hasattr(lacking[name], name)
+
+
+@pytest.mark.parametrize(
+    ("owner", "name", "path"),
+    [
+        ("ShaderNodeTexNoise", "scale", 'ShaderNodeTexNoise.inputs["Scale"]'),
+        ("GeometryNodeRepeatOutput", "iterations", 'GeometryNodeRepeatInput.inputs["Iterations"]'),
+    ],
+)
+def test_an_input_of_a_node_comes_before_what_its_parts_have(
+    kb: KnowledgeBase, owner: str, name: str, path: str
+) -> None:
+    answer = kb.query(f"AttributeError: '{owner}' object has no attribute '{name}'")
+    assert answer.hits[0].id == f"{T}{path}"
+    assert "has it" not in "\n".join(answer.notes)

@@ -211,6 +211,10 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
             "mesh.materials[1] = mat\nIndexError: bpy_prop_collection[index] = value: index 1 out of range, size 1",
             "has only 1, counted from 0: there is no `[1]` yet. `.materials.append(material)` adds one.",
         ),
+        (
+            "spline.points[0].co = v\nIndexError: bpy_prop_collection[index]: index 0 out of range, size 0",
+            "`.points.add(count)` adds one to a poly spline or nurbs spline; a bezier spline refuses it.",
+        ),
         ("IndexError: bpy_prop_collection[index]: index 0 out of range, size 0", "there is no `[0]` yet."),
         (
             "TypeError: bpy_struct: item.attr = val: Object.parent expected a Object type, not Armature",

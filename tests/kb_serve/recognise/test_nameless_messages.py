@@ -40,6 +40,7 @@ grouped()["grouped"] = {}
 grouped()["grouped"]["number"] = "A"
 ob.modifiers.new("w", "WAVE")["a"] = 1
 ob.modifiers.new("w", "WAVE").keys()
+scene.cycles.device = "CUDA"
 bpy.props.IntProperty()["default"]
 bpy.props.IntProperty() + 1
 register_operator_with_own_init(); bpy.ops.wm.made()
