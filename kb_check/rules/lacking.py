@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import OPERATORS
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.findings import Finding
 from kb_check.foreign_addons import may_register
 from kb_check.former_values import new_value
@@ -19,6 +20,10 @@ if TYPE_CHECKING:
 
 # How the path of what is missing is written from its owner and its name, where that is not with a dot.
 _FORMS: dict[ResolutionKind, str] = {"keyword": "{}({})", "value": "{}:{}", "item": ""}
+_ENGINES = f"{T}RenderSettings.engine"
+_WITH_ENGINES = frozenset(
+    {"hydra_storm"}
+)  # the add-ons which Blender brings that register engines and are not on
 
 
 def lacking_finding(
@@ -56,8 +61,12 @@ def _brought(script: Script, row: Resolution) -> str:
 
 def _registering(script: Script, row: Resolution, lacking: Lacking) -> str:
     """The add-on that may register a name: no version has had it, and it is no misspelling; empty for none."""
-    if lacking.removed or lacking.replacement or row.kind not in REGISTERED:
+    is_engine = row.kind == "value" and row.missing == (_ENGINES,)
+    if lacking.removed or lacking.replacement or not (is_engine or row.kind in REGISTERED):
         return ""
+    if is_engine:
+        with_engines = script.package.brought_addons & _WITH_ENGINES
+        return script.package.foreign_addon or next(iter(with_engines), "")
     is_open = row.missing and all(may_register(script.api, owner) for owner in row.missing)
     return script.package.foreign_addon if is_open else ""
 

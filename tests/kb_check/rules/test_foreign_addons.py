@@ -89,3 +89,20 @@ def test_the_addons_of_blender_are_known() -> None:
     # What Blender says of its start, as of another folder of colours, stands before.
     brought = {name for name in done.stdout.splitlines()[-1].split() if name.isidentifier()}
     assert {"cycles", "rigify"} <= brought <= ADDONS
+
+
+@pytest.mark.parametrize(
+    ("enabling", "engine", "severity"),
+    [
+        ('addon_utils.enable("hydra_storm")', "HYDRA_STORM", "note"),
+        (_ENABLING, "STRANGE_ENGINE", "note"),
+        ('addon_utils.enable("rigify")', "STRANGE_ENGINE", "error"),
+        (_ENABLING, "CYCELS", "error"),
+        (_ENABLING, "BLENDER_EEVEE_NEXT", "error"),
+    ],
+)
+def test_an_engine_may_be_one_of_an_addon_that_is_enabled(
+    rule_checker: Checker, enabling: str, engine: str, severity: str
+) -> None:
+    code = f"import addon_utils\nimport bpy\n{enabling}\nbpy.context.scene.render.engine = {engine!r}\n"
+    assert _severities(rule_checker, code) == [severity]
