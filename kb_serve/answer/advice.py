@@ -84,6 +84,34 @@ _TYPED = (
     "`body` takes no keyframes. A handler sets it: `bpy.app.handlers.frame_change_pre.append(function)`, which gets "
     "the scene."
 )
+_FILMED = (
+    "A film: `scene.render.image_settings.media_type = 'VIDEO'` comes first, then "
+    "`scene.render.ffmpeg.format = 'MPEG4'`, `scene.render.ffmpeg.codec = 'H264'`. With images as the medium, 'FFMPEG' "
+    "is no value of `file_format`."
+)
+_OF_SOCKET = (
+    "An input of a node is animated by itself: "
+    '`node.inputs["Emission Strength"].keyframe_insert("default_value", frame=1)`.'
+)
+_AS_MODIFIED = (
+    "`ob.data` is the mesh without modifiers and simulations. As they make it at a frame, after "
+    "`scene.frame_set(frame)`: `evaluated = ob.evaluated_get(bpy.context.evaluated_depsgraph_get())`, "
+    "`mesh = evaluated.to_mesh()`; in the world a vertex is at `evaluated.matrix_world @ mesh.vertices[0].co`. "
+    "`evaluated.to_mesh_clear()` when it is read."
+)
+_PARENTED = (
+    "`child.matrix_parent_inverse = parent.matrix_world.inverted()` leaves the child where it is, once "
+    "`bpy.context.view_layer.update()` has brought the parent's matrix up to date."
+)
+_OF_POSE = "It is in the armature's own space: in the world at `ob.matrix_world @ bone.tail`."
+_LINKED_TWICE = (
+    "It stays in the collections that it is in. To move it, before: "
+    "`for other in ob.users_collection: other.objects.unlink(ob)`."
+)
+_BUMPED_INTO = (
+    "What cloth, a soft body or particles are to bump into needs a modifier of its own: "
+    "`other.modifiers.new(\"Collision\", 'COLLISION')`."
+)
 _ADDED_TO_WORLD = (
     "`bpy.ops.rigidbody.world_add()` leaves the `collection` and the `constraints` of the world None. After "
     '`scene.rigidbody_world.collection = bpy.data.collections.new("Bodies")` a script needs no selection: '
@@ -233,6 +261,55 @@ ADVICE: tuple[Advice, ...] = (
             _stems("bodies body cloth rigid rigidbody soft"),
             _stems("don doesn never no not nothing still"),
             _stems("fall happen happens move moves run runs simulate"),
+        ),
+    ),
+    Advice(
+        _FILMED,
+        wherever=(
+            _stems("ffmpeg film h264 movie mp4 mpeg4"),
+            _stems("animation export output render save set"),
+        ),
+        needs=f"{TYPES}ImageFormatSettings.media_type",
+    ),
+    Advice(
+        _OF_SOCKET,
+        wherever=(
+            _stems("animate keyframe keyframes"),
+            _stems("material node shader socket"),
+            _stems("color colour default_value emission input roughness strength value"),
+        ),
+    ),
+    Advice(
+        _AS_MODIFIED,
+        wherever=(
+            _stems("deformed evaluated"),
+            _stems("coordinates geometry mesh positions vertex vertices"),
+            _stems("evaluated export get read result"),
+        ),
+    ),
+    Advice(
+        _AS_MODIFIED,
+        wherever=(
+            _stems("after"),
+            _stems("coordinates positions vertex vertices"),
+            _stems("armature cloth modifier modifiers simulation"),
+        ),
+    ),
+    Advice(
+        _PARENTED,
+        _of("Object.parent", "Object.matrix_parent_inverse"),
+        asked=_stems("jump keep move offset stay"),
+    ),
+    Advice(_OF_POSE, _of("PoseBone.head", "PoseBone.tail"), asked=_stems("global position space world")),
+    Advice(
+        _LINKED_TWICE, _of("CollectionObjects.link", "CollectionObjects.unlink"), asked=_stems("another move")
+    ),
+    Advice(
+        _BUMPED_INTO,
+        wherever=(
+            _stems("cloth particles soft"),
+            _stems("bump collide collides colliding collision"),
+            _stems("floor ground object objects other setup sphere table"),
         ),
     ),
     Advice(_IN_ZONES, frozenset({"bpy.ops.ptcache.bake_all"}), asked=_stems("geometry node nodes zone")),

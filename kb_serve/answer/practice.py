@@ -34,7 +34,9 @@ class Practice:
         for advice in ADVICE:
             is_about = is_named or not advice.about or not advice.about.isdisjoint(said)
             is_asked = not advice.asked or not advice.asked.isdisjoint(said)
-            if (self._is_on(advice, identifier) and is_about and is_asked) or _is_told_anyway(advice, said):
+            if (self._is_on(advice, identifier) and is_about and is_asked) or self._is_told_anyway(
+                advice, said
+            ):
                 yield advice.text
         if identifier == _TOGGLES_ATTRIBUTE and (text := self._custom.on_attributes()):
             yield text
@@ -51,6 +53,11 @@ class Practice:
             or (bool(advice.explained) and identifier in self._pages[advice.explained])
             or (bool(advice.chapters_of) and _folder(identifier) in self._folders[advice.chapters_of])
         )
+
+    def _is_told_anyway(self, advice: Advice, said: frozenset[str]) -> bool:
+        """Whether a question has a word of each group by which advice is told of any symbol."""
+        is_asked = bool(advice.wherever) and not any(group.isdisjoint(said) for group in advice.wherever)
+        return is_asked and (not advice.needs or self._reader.entry(advice.needs) is not None)
 
     @cached_property
     def _pages(self) -> dict[str, frozenset[str]]:
@@ -69,7 +76,3 @@ class Practice:
 
 def _folder(slug: str) -> str:
     return slug.rpartition("/")[0]
-
-
-def _is_told_anyway(advice: Advice, said: frozenset[str]) -> bool:
-    return bool(advice.wherever) and not any(group.isdisjoint(said) for group in advice.wherever)

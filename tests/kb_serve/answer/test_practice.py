@@ -625,6 +625,112 @@ def test_a_simulation_is_stepped_through(reader: BaseReader) -> None:
     assert ended[1] < 4
 
 
+def test_what_a_simulation_does_is_read_from_the_evaluated_object(reader: BaseReader) -> None:
+    question = "world space vertex positions after modifiers"
+    assert "`mesh = evaluated.to_mesh()`" in said(reader, f"{TYPES}Object.matrix_world", question)
+    assert "to_mesh" not in said(reader, f"{TYPES}Object.matrix_world", "add a modifier to a mesh")
+    bpy.ops.mesh.primitive_grid_add(location=(0, 0, 1))
+    ob = bpy.context.object
+    ob.modifiers.new("w", "WAVE")
+    bpy.context.scene.frame_set(20)
+    evaluated = ob.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    mesh = evaluated.to_mesh()
+    lifted = [vertex.index for vertex in mesh.vertices if (evaluated.matrix_world @ vertex.co).z > 1.001]
+    assert lifted
+    assert all(ob.data.vertices[index].co.z == 0 for index in lifted)
+    evaluated.to_mesh_clear()
+
+
+def test_what_cloth_bumps_into_needs_a_modifier(reader: BaseReader) -> None:
+    told = said(reader, f"{TYPES}ClothCollisionSettings", "cloth collision with an object")
+    assert "`other.modifiers.new(\"Collision\", 'COLLISION')`" in told
+    assert "COLLISION" not in said(reader, f"{TYPES}ClothCollisionSettings", "make cloth collide with itself")
+    heights: list[float] = []
+    for is_obstacle in (False, True):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.mesh.primitive_cube_add(size=4)
+        if is_obstacle:
+            bpy.context.object.modifiers.new("Collision", "COLLISION")
+        bpy.ops.mesh.primitive_grid_add(location=(0, 0, 2.2))
+        cloth = bpy.context.object
+        cloth.modifiers.new("Cloth", "CLOTH")
+        for frame in range(1, 21):
+            bpy.context.scene.frame_set(frame)
+        evaluated = cloth.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        heights.append(min((evaluated.matrix_world @ vertex.co).z for vertex in evaluated.data.vertices))
+    assert heights[0] < 1.5
+    assert heights[1] > 1.9
+
+
+def test_a_film_has_a_medium_of_its_own(reader: BaseReader) -> None:
+    told = said(reader, "bpy.ops.render.render", "render the animation to mp4")
+    assert "media_type = 'VIDEO'` comes first" in told
+    render = bpy.context.scene.render
+    with pytest.raises(TypeError, match="FFMPEG"):
+        render.image_settings.file_format = "FFMPEG"
+    render.image_settings.media_type = "VIDEO"
+    assert render.image_settings.file_format == "FFMPEG"
+    render.ffmpeg.format, render.ffmpeg.codec = "MPEG4", "H264"
+
+
+def test_an_input_of_a_node_is_animated_by_itself(reader: BaseReader) -> None:
+    told = said(reader, f"{TYPES}Material", "keyframe the emission strength of a material")
+    assert '.keyframe_insert("default_value", frame=1)`' in told
+    tree = bpy.data.materials.new("m").node_tree
+    (node,) = (node for node in tree.nodes if node.bl_idname == "ShaderNodeBsdfPrincipled")
+    assert node.inputs["Emission Strength"].keyframe_insert("default_value", frame=1)
+    assert tree.animation_data.action is not None
+
+
+def test_a_child_stays_where_it_is(reader: BaseReader) -> None:
+    assert "matrix_parent_inverse = parent" in said(
+        reader, f"{TYPES}Object.parent", "parent and keep transform"
+    )
+    parent, child = (bpy.data.objects.new(name, None) for name in "ab")
+    for ob in (parent, child):
+        bpy.context.collection.objects.link(ob)
+    parent.location, child.location = (1, 2, 3), (5, 5, 5)
+    bpy.context.view_layer.update()
+    child.parent = parent
+    child.matrix_parent_inverse = parent.matrix_world.inverted()
+    bpy.context.view_layer.update()
+    assert child.matrix_world.translation[:] == (5, 5, 5)
+
+
+def test_a_pose_bone_lies_in_the_space_of_its_armature(reader: BaseReader) -> None:
+    told = said(reader, f"{TYPES}PoseBone.tail", "world position of a bone's tail")
+    assert "`ob.matrix_world @ bone.tail`" in told
+    bpy.ops.object.armature_add(location=(3, 0, 0))
+    ob = bpy.context.object
+    bone = ob.pose.bones[0]
+    assert bone.tail[:] == (0, 0, 1)
+    assert (ob.matrix_world @ bone.tail)[:] == (3, 0, 1)
+
+
+def test_an_object_moves_to_another_collection_by_leaving_its_own(reader: BaseReader) -> None:
+    told = said(reader, f"{TYPES}CollectionObjects.link", "move an object to another collection")
+    assert "`for other in ob.users_collection: other.objects.unlink(ob)`" in told
+    new = bpy.data.collections.new("x")
+    bpy.ops.object.empty_add()
+    ob = bpy.context.object
+    for other in ob.users_collection:
+        other.objects.unlink(ob)
+    new.objects.link(ob)
+    assert ob.users_collection == (new,)
+
+
+def test_the_body_of_a_text_takes_no_keyframes(reader: BaseReader) -> None:
+    assert "takes no keyframes" in said(reader, f"{TYPES}TextCurve.body", "animate the body of a text")
+    with pytest.raises(TypeError, match="not animatable"):
+        bpy.data.curves.new("t", "FONT").keyframe_insert("body")
+
+
+def test_simulations_of_geometry_nodes_are_no_point_caches(reader: BaseReader) -> None:
+    told = said(reader, "bpy.ops.ptcache.bake_all", "bake the geometry nodes simulation")
+    assert "`bpy.ops.object.simulation_nodes_cache_bake(selected=True)`" in told
+    assert "simulation_nodes_cache_bake" not in said(reader, "bpy.ops.ptcache.bake_all", "bake cloth")
+
+
 def test_a_new_rigid_body_world_is_given_a_collection(reader: BaseReader) -> None:
     assert "`scene.rigidbody_world.collection.objects.link(obj)`" in said(
         reader, f"{TYPES}RigidBodyWorld.collection"
