@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Protocol
 
 from kb_build.flow.facts import (
@@ -239,13 +240,17 @@ class Api:
 
     def below_as_data(self, name: str) -> tuple[tuple[str, Member], ...]:
         """The classes of objects' data, and those around them, that have a member: (class, member)."""
-        names = [data_class(kind, lambda each: self.is_class(T + each)) for kind in OBJECT_DATA]
-        data = [T + name for name in (*names, OF_EMPTIES)]
 
         def is_of_data(cls: str) -> bool:
-            return any(self.descends(cls, each) or self.descends(each, cls) for each in data)
+            return any(self.descends(cls, each) or self.descends(each, cls) for each in self._object_data)
 
         return tuple((cls, member) for cls, member in self.below(ID, name) if is_of_data(cls))
+
+    @cached_property
+    def _object_data(self) -> tuple[str, ...]:
+        """The classes of objects' data, and of what an empty shows."""
+        names = (data_class(kind, lambda each: self.is_class(T + each)) for kind in OBJECT_DATA)
+        return tuple(T + name for name in (*names, OF_EMPTIES))
 
     def had(self, cls: str, name: str) -> bool:
         """Whether a class had, or gets, a member in another Blender that it lacks in this one; "" has modules."""
