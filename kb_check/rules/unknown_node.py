@@ -26,6 +26,7 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import CLASS_NAMES
+from kb_build.flow.types import Instance
 from kb_build.index.analysis import key, words
 from kb_build.symbols.api_names import NODE
 from kb_build.symbols.api_names import TYPES as T
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _SOCKET = "NodeSocket"
+_NEW = f"{T}Nodes.new"
 _LABEL = "{name} is what menus call {names}: `nodes.new` takes that."
 _ALIKE = "No node is called {name}: `nodes.new` takes {names}."
 _BLENDERS_OWN = re.compile(rf"({'|'.join(NODE_FAMILIES)}|NodeSocket)[A-Z]\w+")
@@ -85,11 +87,37 @@ def _check(script: Script) -> Iterator[Finding]:
                 yield _named_finding(script, node, alike, _ALIKE, sure=False)
                 continue
             yield from _unknown(script, node, name)
+    yield from _of_guessed(script)
     for row in script.missing("class"):
         name = row.value
         is_own = name in script.own_identifiers or script.package.has(("bpy.types",), name)
         if not is_own and not script.names.still_works(f"{T}{name}"):
             yield from _unknown(script, row.node, name)
+
+
+def _of_guessed(script: Script) -> Iterator[Finding]:
+    """Former nodes, given to the ``new`` of what is only likely a tree's nodes: a parameter of that name."""
+    for call in script.all(ast.Call):
+        match call:
+            case ast.Call(func=ast.Attribute(value=receiver, attr="new") as function):
+                kind = script.type_of(receiver)
+            case _:
+                continue
+        if not isinstance(kind, Instance) or kind.sure or kind.cls != f"{T}Nodes":
+            continue
+        row = script.analysis.resolutions.get(function)
+        given = [*call.args[:1], *(word.value for word in call.keywords if word.arg == "type")]
+        for node in given if row and not row.is_ready_for(*refusing_class(_NEW)) else ():
+            if isinstance(node, ast.Constant) and _is_former_node(script, node.value):
+                yield from _unknown(script, node, str(node.value))
+
+
+def _is_former_node(script: Script, name: object) -> bool:
+    """Whether something is the name of a node that another Blender has, and that nothing here is called by."""
+    if not isinstance(name, str) or not script.names.was("bpy.types", name):
+        return False
+    is_own = name in script.own_identifiers or script.package.has(("bpy.types",), name)
+    return not is_own and not script.names.still_works(f"{T}{name}") and not script.api.is_class(f"{T}{name}")
 
 
 def _socket_class(script: Script, name: str) -> str:

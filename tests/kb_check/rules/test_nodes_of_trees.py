@@ -7,6 +7,7 @@ import subprocess
 import sys
 from typing import TYPE_CHECKING
 
+import pytest
 from statements_in_blender import run_statements
 
 from kb_build.index.analysis import words
@@ -126,3 +127,26 @@ def test_keywords_of_what_takes_nothing_are_reported(check: Check, tmp_path: Pat
     ]
     refused = {place for place, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error}
     assert {finding.span.line for finding in check("unknown-keyword", "\n".join(lines))} == refused == {3, 7}
+
+
+@pytest.mark.parametrize(
+    ("code", "is_reported"),
+    [
+        ('def build(nodes):\n    nodes.new("ShaderNodeTexMusgrave")', True),
+        ('def build(nodes):\n    return nodes.new(type="ShaderNodeSeparateRGB")', True),
+        ('def build(tree):\n    tree.nodes.new("ShaderNodeSeparateRGB")', True),
+        ('def build(nodes):\n    nodes.new("ShaderNodeTexNoise")', False),
+        ('def build(nodes):\n    nodes.new("GraphNodeOfAnAddon")', False),
+        ('def build(nodes):\n    nodes.append(nodes.new("ShaderNodeTexMusgrave"))', False),
+        (
+            'def build(nodes):\n    try:\n        nodes.new("ShaderNodeTexMusgrave")\n    except RuntimeError:\n'
+            '        nodes.new("ShaderNodeTexNoise")',
+            False,
+        ),
+        ('def build(nodes: "Graph"):\n    nodes.new("ShaderNodeTexMusgrave")', False),
+    ],
+)
+def test_a_former_node_is_reported_for_a_parameter_called_nodes(
+    check: Check, code: str, *, is_reported: bool
+) -> None:
+    assert bool(check("unknown-node", f"import bpy\n{code}\n")) is is_reported
