@@ -276,7 +276,7 @@ ADVICE: tuple[Advice, ...] = (
         wherever=(
             _stems("animate keyframe keyframes"),
             _stems("material node shader socket"),
-            _stems("color colour default_value emission input roughness strength value"),
+            _stems("color colour emission roughness strength"),
         ),
     ),
     Advice(
