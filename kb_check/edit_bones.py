@@ -15,7 +15,7 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls import calls_by_node
 from kb_check.literals import bound_names
 from kb_check.made_here import bodies, callee_path, computes_names, named_words
-from kb_check.mode_keeping import keeps_mode, sets_active
+from kb_check.mode_keeping import keeps_mode, run_in, sets_active
 from kb_check.modes import MODE_SET, literal_argument
 from kb_check.script import once_per_script
 
@@ -266,16 +266,6 @@ def surely_run(statement: ast.stmt) -> Iterator[ast.AST]:
     while waiting:
         node = waiting.pop()
         if not isinstance(node, _NOT_SURELY):
-            yield node
-            waiting += children(node)
-
-
-def run_in(statement: ast.stmt) -> Iterator[ast.AST]:
-    """The parts of a statement, blocks and all, that may run with it: not those of what it defines."""
-    waiting: list[ast.AST] = [statement]
-    while waiting:
-        node = waiting.pop()
-        if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda)):
             yield node
             waiting += children(node)
 

@@ -64,7 +64,7 @@ def _changing(script: Script) -> frozenset[str]:
 
 
 def _keeps(script: Script, root: ast.AST, changing: frozenset[str]) -> bool:
-    for node in _run(root):
+    for node in run_in(root):
         match node:
             case ast.Call(func=ast.Name(id=name)) if name in own_functions(script):
                 known = name not in changing
@@ -81,7 +81,7 @@ def _keeps(script: Script, root: ast.AST, changing: frozenset[str]) -> bool:
 
 def _own_calls(script: Script, root: ast.AST) -> Iterator[str]:
     """The script's own functions that a statement may call."""
-    for node in _run(root):
+    for node in run_in(root):
         match node:
             case ast.Call(func=ast.Name(id=name)) if name in own_functions(script):
                 yield name
@@ -89,7 +89,7 @@ def _own_calls(script: Script, root: ast.AST) -> Iterator[str]:
                 pass
 
 
-def _run(root: ast.AST) -> Iterator[ast.AST]:
+def run_in(root: ast.AST) -> Iterator[ast.AST]:
     """The parts of a statement or expression that may run with it: not those of what it defines."""
     waiting = [root]
     while waiting:

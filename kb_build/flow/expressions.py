@@ -169,9 +169,8 @@ class Expressions(Members):
             return Plain(owner.kind) if isinstance(owner, Plain) else owner
         if isinstance(owner, Union):
             return union(self._sliced(member, part) for member in owner.members)
-        if isinstance(
-            owner, (Unknown, LocalInstance)
-        ):  # a text, an array, what a class of the script's own gives
+        # A text, an array, what a class of the script's own gives.
+        if isinstance(owner, (Unknown, LocalInstance)):
             return UNKNOWN
         return Sequence("list", self.iterated(owner))
 

@@ -10,13 +10,13 @@ from kb_build.flow.doubts import EVERYTHING
 from kb_build.flow.guards import Guards, assigned_names
 from kb_build.flow.scopes import joined
 from kb_build.flow.trees import run_with
-from kb_build.flow.types import UNKNOWN, Builtin, Tuple, Type, members, union
-from kb_build.flow.types import Sequence as SequenceType
+from kb_build.flow.types import UNKNOWN, Builtin, Sequence, Tuple, Type, catches, members, union
 from kb_build.flow.ways import Ways
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Sequence as Rows
 
+_LACKS = ("AttributeError",)
 _FORGIVING = frozenset(
     {
         "AttributeError",
@@ -31,9 +31,6 @@ _FORGIVING = frozenset(
         "ValueError",
     }
 )
-
-
-_LACKING = frozenset({EVERY_ERROR, "AttributeError", "Exception", "BaseException"})
 
 
 class Handlers(Guards, Ways):
@@ -57,7 +54,11 @@ class Handlers(Guards, Ways):
             with self.ready_for((EVERY_ERROR,) if errors else ()):
                 ways.append(self.way(self.here.scope.state, handler.body))
         reached = self.meet(ways, self.copied(within))
-        if after is None and _only_reads([*node.body, *node.orelse]) and any(map(_LACKING.__and__, caught)):
+        if (
+            after is None
+            and _only_reads([*node.body, *node.orelse])
+            and any(catches(errors, _LACKS) for errors in caught)
+        ):
             self.doubt_here(EVERYTHING)  # what follows is come to where a member is lacking that was read
         if any(caught):
             handled = [statement for handler in node.handlers for statement in handler.body]
@@ -109,7 +110,7 @@ class Handlers(Guards, Ways):
         return frozenset(kind.name for kind in kinds if isinstance(kind, Builtin) and kind.name in _FORGIVING)
 
 
-def _only_reads(statements: Sequence[ast.stmt]) -> bool:
+def _only_reads(statements: Rows[ast.stmt]) -> bool:
     """Whether statements read members, and do nothing else that may fail."""
     parts = [*run_with(statements)]
     is_reading = any(isinstance(part, ast.Attribute) for part in parts)
@@ -118,7 +119,5 @@ def _only_reads(statements: Sequence[ast.stmt]) -> bool:
 
 def _entered(kind: Type) -> Type:
     """What ``with`` gives: of a generator, which only a decorator makes a context manager, what it yields."""
-    yielded = [
-        one.element for one in members(kind) if isinstance(one, SequenceType) and one.kind == "iterator"
-    ]
+    yielded = [one.element for one in members(kind) if isinstance(one, Sequence) and one.kind == "iterator"]
     return union(yielded) if yielded else kind

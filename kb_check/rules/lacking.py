@@ -21,9 +21,8 @@ if TYPE_CHECKING:
 # How the path of what is missing is written from its owner and its name, where that is not with a dot.
 _FORMS: dict[ResolutionKind, str] = {"keyword": "{}({})", "value": "{}:{}", "item": ""}
 _ENGINES = f"{T}RenderSettings.engine"
-_WITH_ENGINES = frozenset(
-    {"hydra_storm"}
-)  # the add-ons which Blender brings that register engines and are not on
+# The add-ons which Blender brings that register engines and are not on.
+_WITH_ENGINES = frozenset({"hydra_storm"})
 
 
 def lacking_finding(
@@ -61,13 +60,14 @@ def _brought(script: Script, row: Resolution) -> str:
 
 def _registering(script: Script, row: Resolution, lacking: Lacking) -> str:
     """The add-on that may register a name: no version has had it, and it is no misspelling; empty for none."""
-    is_engine = row.kind == "value" and row.missing == (_ENGINES,)
-    if lacking.removed or lacking.replacement or not (is_engine or row.kind in REGISTERED):
+    if lacking.removed or lacking.replacement:
         return ""
-    if is_engine:
+    if row.kind == "value" and row.missing == (_ENGINES,):
         with_engines = script.package.brought_addons & _WITH_ENGINES
         return script.package.foreign_addon or next(iter(with_engines), "")
-    is_open = row.missing and all(may_register(script.api, owner) for owner in row.missing)
+    if row.kind not in REGISTERED or not row.missing:
+        return ""
+    is_open = all(may_register(script.api, owner) for owner in row.missing)
     return script.package.foreign_addon if is_open else ""
 
 

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.types import Instance
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls import calls, calls_by_node
-from kb_check.edit_bones import bound_in, names_in, run_in, surely_run
+from kb_check.edit_bones import bound_in, names_in, surely_run
 from kb_check.findings import Finding
 from kb_check.made_here import (
     alias,
@@ -32,7 +32,7 @@ from kb_check.made_here import (
     member_path,
     texts_but_keys,
 )
-from kb_check.mode_keeping import is_harmless
+from kb_check.mode_keeping import is_harmless, run_in
 from kb_check.raised import LACKS_KEY
 from kb_check.rule import Rule
 from kb_check.script import once_per_script

@@ -71,7 +71,7 @@ def _check(script: Script) -> Iterator[Finding]:
             if script.api.is_class(f"{T}{name}") and not (is_label and _labelled(script, call, name)):
                 yield from _refused(script, call, node, name)
                 continue
-            if script.package.has(("bpy.types",), name) or script.names.still_works(f"{T}{name}"):
+            if _is_taken(script, name):
                 continue
             if (
                 wanted == "type"
@@ -89,10 +89,8 @@ def _check(script: Script) -> Iterator[Finding]:
             yield from _unknown(script, node, name)
     yield from _of_guessed(script)
     for row in script.missing("class"):
-        name = row.value
-        is_own = name in script.own_identifiers or script.package.has(("bpy.types",), name)
-        if not is_own and not script.names.still_works(f"{T}{name}"):
-            yield from _unknown(script, row.node, name)
+        if not _is_taken(script, row.value):
+            yield from _unknown(script, row.node, row.value)
 
 
 def _of_guessed(script: Script) -> Iterator[Finding]:
@@ -116,8 +114,13 @@ def _is_former_node(script: Script, name: object) -> bool:
     """Whether something is the name of a node that another Blender has, and that nothing here is called by."""
     if not isinstance(name, str) or not script.names.was("bpy.types", name):
         return False
+    return not _is_taken(script, name) and not script.api.is_class(f"{T}{name}")
+
+
+def _is_taken(script: Script, name: str) -> bool:
+    """Whether a name is of a class of the script's or its package's, or a former one that this Blender still takes."""
     is_own = name in script.own_identifiers or script.package.has(("bpy.types",), name)
-    return not is_own and not script.names.still_works(f"{T}{name}") and not script.api.is_class(f"{T}{name}")
+    return is_own or bool(script.names.still_works(f"{T}{name}"))
 
 
 def _socket_class(script: Script, name: str) -> str:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from kb_build.index.analysis import stem, words
 from kb_build.symbols.api_names import HANDLERS, TYPES
+from kb_build.symbols.lines import GET_EVALUATED
 from kb_serve.recognise.code.products import CLASSES, WITH_AT
 from kb_serve.recognise.messages.nameless.python import PLAIN_FUNCTION
 from kb_serve.recognise.messages.ways_to_run import NO_FLUIDS
@@ -95,7 +96,7 @@ _OF_SOCKET = (
 )
 _AS_MODIFIED = (
     "`ob.data` is the mesh without modifiers and simulations. As they make it at a frame, after "
-    "`scene.frame_set(frame)`: `evaluated = ob.evaluated_get(bpy.context.evaluated_depsgraph_get())`, "
+    f"`scene.frame_set(frame)`: `evaluated = ob{GET_EVALUATED}`, "
     "`mesh = evaluated.to_mesh()`; in the world a vertex is at `evaluated.matrix_world @ mesh.vertices[0].co`. "
     "`evaluated.to_mesh_clear()` when it is read."
 )

@@ -6,10 +6,10 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import split_arguments
 from kb_build.symbols.flags import operator_also, operator_areas, operator_given, refused_nothing
 from kb_build.symbols.lines import TRIED, operator_needs
 from kb_build.symbols.records import REFUSED_ALL
+from kb_serve.recognise.resolving.call_texts import arguments
 from kb_serve.recognise.resolving.chains import find_chains
 
 if TYPE_CHECKING:
@@ -27,7 +27,6 @@ NO_OVERRIDE = (
 _WITH = "with bpy.context.temp_override"
 _ACTIVE = "bpy.context.view_layer.objects.active = ob"
 _SELECTED = "ob.select_set(True)"
-_KEYWORD = re.compile(r"\s*\w+\s*=(?!=)")
 _OF_AREA = re.compile(r"\barea\.")  # a statement on the area
 # A name for what a member of the context is taken from.
 _THINGS = {"id": "ob", "point_cache": "modifier.point_cache", "edit_image": "image", "edit_text": "text"}
@@ -38,12 +37,12 @@ _INSTEAD = {
 }
 
 
-def context_for(operator: Symbol, like: str = "", arguments: str = "") -> str:
+def context_for(operator: Symbol, like: str = "", given: str = "") -> str:
     """What lets an operator run whose ``poll()`` failed; ``like`` is the member of the context that those like it want,
-    if nothing is known of itself; ``arguments`` are those that it was called with, as they are written.
+    if nothing is known of itself; ``given`` are the arguments that it was called with, as they are written.
     """
     path = operator.path
-    call = f"{path}({arguments or _ARGUMENTS.get(path, '')})"
+    call = f"{path}({given or _ARGUMENTS.get(path, '')})"
     failed = f"`{path}.poll()` failed: "
     if needs := operator_needs(operator):
         return f"{failed}of all that was tried, it takes {needs}. {_giving(operator, call)}".rstrip()
@@ -121,7 +120,7 @@ def keywords_given(query: str, path: str) -> str:
     no name.
     """
     given = next((chain.call for chain in find_chains(query) if chain.dotted == path and chain.call), "")
-    return given if given and all(_KEYWORD.match(each) for each in split_arguments(given)) else ""
+    return given if all(name for name, _ in arguments(given)) else ""
 
 
 def with_context(chain: Chain) -> str:

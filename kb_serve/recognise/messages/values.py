@@ -24,6 +24,7 @@ _FEW = 3
 _MOST_OWNERS = 8  # that are compared
 _NO_ITEM = "`{name}` is not an item of this enum; closest: {similar}."
 _LABELLED = "`{name}` is not an item of this enum; of that label: {items}."
+_TAKEN_BY = "`{name}` is a value of {owners}."
 _NOT_NOW = "`{name}` is a value of `{owner}`, which present data do not allow."
 _NEVER = "RNA lists `{name}` for `{owner}`, and no {thing} comes to have it.{instead}"
 _OF_OPERATORS = "to operator properties"
@@ -82,11 +83,11 @@ class Values:
             labelled = ", ".join(f"`{item}`" for item in self._labelled(owner, name, items)[:_FEW])
             yield labelled and _LABELLED.format(name=name, items=labelled)
         beside = ", ".join(f"`{other}`" for other in self._taking_beside(owners, name))
-        yield beside and f"`{name}` is a value of {beside}."
+        yield beside and _TAKEN_BY.format(name=name, owners=beside)
         similar = _closest(name, items) or self._explaining(owners, name)
         yield similar and _NO_ITEM.format(name=name, similar=similar)
         others = ", ".join(f"`{other}`" for other in self._taking_only(name)) if owners else ""
-        yield others and f"`{name}` is a value of {others}."
+        yield others and _TAKEN_BY.format(name=name, owners=others)
 
     def _never_had(self, owner: str, name: str, items: Sequence[str]) -> str:
         """That nothing comes to have a value, as a property with the same items tells that Blender alone sets; empty
@@ -118,16 +119,17 @@ class Values:
 
     def _taking_only(self, value: str) -> list[str]:
         """The properties that take a value, where only a few do."""
-        owners = [
-            owner for owner, identifier, _ in self._reader.enum_owners(key(value)) if identifier == value
-        ]
+        owners = self._taking(value)
         return owners if len(owners) < _FEW and all("(" not in owner for owner in owners) else []
 
     def _taking_beside(self, owners: Sequence[str], value: str) -> list[str]:
         """The properties that take a value, of the class of the likeliest owner."""
         cls = owners[0].rpartition(".")[0] if owners and "(" not in owners[0] else ""
-        named = self._reader.enum_owners(key(value)) if cls else ()
-        return [owner for owner, item, _ in named if item == value and owner.rpartition(".")[0] == cls]
+        return [owner for owner in self._taking(value) if owner.rpartition(".")[0] == cls] if cls else []
+
+    def _taking(self, value: str) -> list[str]:
+        """All that takes exactly a value."""
+        return [owner for owner, item, _ in self._reader.enum_owners(key(value)) if item == value]
 
     def _lost_value(self, owners: Iterable[str], value: str) -> RemovedSymbol | None:
         """A value that the likeliest owners took in other versions; where several did, one of which the successor is
