@@ -9,9 +9,10 @@ CODE_WORDS = frozenset(
 )
 # … and that writes a script.
 SCRIPT_WORDS = frozenset({"bpy", "programmatically", "python", "script", "scripts"})
-# There are so many nodes that one has something of everything; who wants one mostly says so.
+# There are so many nodes that one has something of everything; who wants one mostly says so, or what is made of them.
 NODE_WORDS = frozenset(
-    "compositing compositor geometry node nodes nodetree shader shaders socket sockets".split()  # noqa: SIM905
+    """compositing compositor geometry material materials node nodes nodetree shader shaders socket
+    sockets""".split()  # noqa: SIM905
 )
 REMOVAL_WORDS = frozenset(
     """away clean clear cut delete deleted deleting detach discard drop empty erase forget free get hide kill lose off

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import STOP_WORDS, words
+from kb_build.index.analysis import STOP_WORDS, stems_of, words
 from kb_serve.rank.asked_words import SCRIPT_WORDS
 from kb_serve.rank.deprecated import replacement
 from kb_serve.rank.meant_members import MeantMembers, meant_members
@@ -127,7 +127,7 @@ class QueryRanker:
 
     def rank(self, query: str, limit: int = _LEAST_HITS, about: str = "") -> Ranking:
         """The ids for a query, at least ``limit`` of them if there are; ``about``: see Searcher.search."""
-        query, operators = without_unwanted(query)
+        query, operators, without = without_unwanted(query)
         recognition = self._recogniser.recognise(query)
         best = recognition.best
         if best is not None and best.sure >= 1.0 and best.why != "successor":
@@ -150,6 +150,8 @@ class QueryRanker:
             ranked = self._name_first(ranked)
         if not operators:
             ranked.sort(key=self._far_from_functions)
+        if without:
+            ranked.sort(key=lambda row: without in stems_of(row.id))
         ranked[:1] = [self._at_its_section(row, prose) for row in ranked[:1]]
         named = best is not None and best.sure >= 0.9 and best.why not in {"enum item", "replacement"}
         named = named and not recognition.is_open

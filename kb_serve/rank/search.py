@@ -24,7 +24,7 @@ from kb_serve.rank.scoring import Concept, score_all
 from kb_serve.rank.signals import Evidence, scores_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence, Set
 
     from numpy.typing import NDArray
 
@@ -46,11 +46,13 @@ _CANDIDATES = 400
 _DIFFERENT = 4  # hits, before what says the same as one of them may follow
 _OF_A_CHAPTER = 3
 _WORDS_OF_A_NAME = 2  # of an operator's name that a query hardly says by chance
+_AS_MEMBER = 0.3  # what it counts that a query says a member's name and its owner's, next to an operator's
 _KINDS = frozenset(map(stem, ("modifier", "constraint", "node")))  # who says one means no operator without it
-_NEAREST = 100  # units by their texts, among which such an operator is looked for
+_NEAREST = 30  # units by their texts, among which such a name is looked for
 _OTHERS = 0.4  # share of what further phrases add to the nearest that counts
 _MEMBERS = 3  # of a class that are told with it
 _NEAR = 0.35  # share of the best member's score below which another one is not told
+_NO_NAME = frozenset[str]()
 _INDEX = DOCUMENT_KINDS.index("index")
 
 
@@ -157,11 +159,13 @@ class Searcher:
         return [self._hit(place, ranked) for place in self._varied(best, ranked, limit)]
 
     def found(self, text: str) -> Iterator[tuple[str, float]]:
-        """The units that speak of a text, best first, with their scores: each section of a page is one."""
+        """The units that speak of a class and a name, best first, with their scores: each section of a page is one.
+        That a member is called by its class says nothing there.
+        """
         if (found := self.find(text)) is None:
             return
         numbers, evidence = found
-        scores = scores_of(evidence)
+        scores = scores_of(replace(evidence, called=None))
         for place in np.argsort(-scores, kind="stable").tolist():
             yield self.index.levels[0].refs[numbers[place]], float(scores[place])
 
@@ -218,21 +222,18 @@ class Searcher:
         return numbers, evidence
 
     def _called(self, numbers: NDArray[np.intp], concepts: Sequence[Concept]) -> Scores | None:
-        """The share of the query that the names of operators are, of some words, which the query says whole; None if it
-        says none.
+        """The share of the query that the names of operators are, of some words, which the query says whole, and in
+        part that the names of members are with their owners'; None if it says none.
         """
         asked = {concept.stem: concept.idf for concept in concepts}
         said = frozenset(asked)
-        kinds = said & _KINDS
         called: Scores | None = None
         refs = self.index.levels[0].refs
         for place, number in enumerate(numbers[:_NEAREST].tolist()):
-            if not refs[number].startswith(OPERATORS):
-                continue
-            name = stems_of(refs[number].rpartition(".")[2])
-            if len(name) >= _WORDS_OF_A_NAME and name <= said and name >= kinds:
+            name, counts = _name_of(refs[number], said & _KINDS)
+            if len(name) >= _WORDS_OF_A_NAME and name <= said:
                 called = np.zeros(len(numbers), np.float32) if called is None else called
-                called[place] = sum(asked[part] for part in name) / sum(asked.values())
+                called[place] = counts * sum(asked[part] for part in name) / sum(asked.values())
         return called
 
     def _asked(self, found: Scored, numbers: NDArray[np.intp], topic: NDArray[np.int32]) -> Scores:
@@ -289,6 +290,18 @@ class Searcher:
                 return first[:limit]
         few = waiting if len(first) < _DIFFERENT else []
         return [*first, *few, *later][:limit]
+
+
+def _name_of(ref: str, kinds: Set[str]) -> tuple[Set[str], float]:
+    """(the words that a symbol is called by, how much it counts that a query says them): an operator by its own name,
+    with the ``kinds`` of things that are asked for; a member by its owner's and its own, if that adds something.
+    """
+    path, _, last = ref.rpartition(".")
+    own = stems_of(last)
+    if ref.startswith(OPERATORS):
+        return (own, 1.0) if own >= kinds else (_NO_NAME, 0.0)
+    owners = stems_of(path.rpartition(".")[2]) if path else _NO_NAME
+    return (owners | own, _AS_MEMBER) if owners and not own <= owners else (_NO_NAME, 0.0)
 
 
 def _told(found: Scored, numbers: NDArray[np.intp] | slice) -> Scores:

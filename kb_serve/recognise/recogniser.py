@@ -8,7 +8,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, tokens
-from kb_build.symbols.api_names import ID, NODE, OPERATORS, TYPES
+from kb_build.symbols.api_names import ID, OPERATORS, TYPES
 from kb_build.symbols.paths import last_name, plain_path, socket_node
 from kb_serve.recognise.code.contexts import NO_OVERRIDE, OVERRIDE
 from kb_serve.recognise.code.expressions import Expressions
@@ -30,6 +30,7 @@ from kb_serve.recognise.names.addresses import ids_in_urls
 from kb_serve.recognise.names.corrections import Corrector, by_first_word, nearest, shortened
 from kb_serve.recognise.names.enum_values import EnumValues
 from kb_serve.recognise.names.holders import by_what_holds_it
+from kb_serve.recognise.names.inputs_meant import input_meant
 from kb_serve.recognise.names.members_within import members_within
 from kb_serve.recognise.names.operator_words import OperatorWords
 from kb_serve.recognise.names.said_otherwise import said_otherwise
@@ -47,6 +48,7 @@ from kb_serve.recognise.resolving.bindings import with_bindings
 from kb_serve.recognise.resolving.chains import Chain, find_chains
 from kb_serve.recognise.resolving.resolver import Resolver
 from kb_serve.recognise.resolving.subscripts import asked_of_inputs
+from kb_serve.recognise.resolving.variables import usual_classes
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
@@ -70,8 +72,8 @@ _OWNER_OF_REMOVED = 0.85  # … one whose removed member has no known successor
 _LIKELY = 1.1
 _LIKELY_GUESS = 0.88
 _GUESS = 0.83
-_ZONE_START, _ZONE_END = "Input", "Output"  # the last words of the classes of nodes that are made in pairs
 _SOCKET_VALUE = "The value of a socket is its `default_value`: `node.inputs[…].default_value = …`."
+_OF_OPERATOR = "`{0}` may be the properties of an operator: `{0} = layout.operator(…)`."
 _UNKNOWN_MODULE = (
     "The build of Blender {version} behind this base has no module `{module}`; other builds may have it."
 )
@@ -195,9 +197,25 @@ class Recogniser:
             recognition.add_removed(removed)
         if guesses and guesses[0].kind in {"property", "socket"} and not any(lost):
             name = guesses[0].path[len(guesses[0].owner) :]
-            owners = (path for value in chain.values for path, *_ in self._reader.enum_owners(key(value)))
-            if not any(path.endswith(name) for path in owners):
+            owners = [path for value in chain.values for path, *_ in self._reader.enum_owners(key(value))]
+            if any(path.endswith(name) for path in owners):
+                return
+            if not self._are_of_operator(chain, owners, recognition):
                 recognition.notes += wrong_values(chain, guesses[0], (), self._reader)
+
+    def _are_of_operator(self, chain: Chain, owners: list[str], recognition: Recognition) -> bool:
+        """Adds the operators of which one's properties may be what a variable holds, ``props.direction = 'DOWN'``: one
+        has such a value by that name; whether there are any.
+        """
+        argument = f"({_name(chain)})"
+        taking = [path.removesuffix(argument) for path in owners if path.endswith(argument)]
+        if usual_classes(chain.root) or not taking:
+            return False
+        entries = filter(None, map(self._reader.entry, dict.fromkeys(taking)))
+        for place, operator in enumerate(self._reader.heaviest(entries)[:_FEW]):
+            recognition.add(operator.path, _WITHIN - 0.01 * place, "enum item")
+        recognition.notes.append(_OF_OPERATOR.format(chain.root))
+        return True
 
     @staticmethod
     def _read_as(chain: Chain, recognition: Recognition) -> str:
@@ -281,11 +299,12 @@ class Recogniser:
         for missing in recognition.missing:
             if missing.name not in removed:
                 self._explain_name(missing, recognition)
+        if (doubted := recognition.doubted) and not recognition.removed:
+            self._as_input(doubted, recognition)
 
     def _explain_name(self, missing: MissingName, recognition: Recognition) -> None:
         """Adds similar members of the class that lacks a name, or the name on other classes, or the class."""
-        if socket := self._input(missing):
-            recognition.add(socket, _WITHIN if missing.told else _HELD_PERHAPS, SIMILAR)
+        if self._as_input(missing, recognition):
             return
         for place, path in enumerate(self._operators.having(missing.owner, missing.name)):
             recognition.add(path, 0.95 - 0.01 * place, SIMILAR)
@@ -315,19 +334,14 @@ class Recogniser:
         if self._reader.entry(missing.owner) and not similar and not otherwise:
             self._like_nothing(missing, names, recognition)
 
-    def _input(self, missing: MissingName) -> str:
-        """The path of the input of a node that is called as what it lacks, or of the node where a zone begins that ends
-        with it; empty for none.
-        """
-        owner = self._reader.entry(missing.owner)
-        if owner is None or not self._reader.descends(owner.path, NODE):
-            return ""
-        start = owner.path.removesuffix(_ZONE_END) + _ZONE_START if owner.path.endswith(_ZONE_END) else ""
-        for node in filter(None, (owner.path, start)):
-            for name, member in self._reader.members(node).items():
-                if name.startswith("inputs[") and key(member.label) == key(missing.name):
-                    return member.path
-        return ""
+    def _as_input(self, missing: MissingName, recognition: Recognition) -> bool:
+        """Adds the input of a node that is called as what it, or what is made of it, lacks; whether there is one."""
+        socket = input_meant(missing.owner, missing.name, self._reader)
+        if socket is None:
+            return False
+        recognition.add(socket.path, _WITHIN if missing.told else _HELD_PERHAPS, SIMILAR)
+        recognition.notes += [socket.note] if socket.note else []
+        return True
 
     def _like_nothing(self, missing: MissingName, names: list[str], recognition: Recognition) -> None:
         """Adds the members that begin with a name's first word or shorten it, and the name on other classes or the

@@ -36,6 +36,13 @@ _OF_ALL = frozenset({"animate"})
 _OBJECTS = frozenset(
     "a an all another both each every everything him it its my one our that the their them these this those two".split()  # noqa: SIM905
 )
+# Who does a thing and its opposite to one object asks how it changes.
+_OPPOSITES = (
+    frozenset({"hide", "show"}),
+    frozenset({"enable", "disable"}),
+    frozenset({"link", "unlink"}),
+    frozenset({"start", "stop"}),
+)
 _PRONOUNS = frozenset("him it that them these this those".split())  # noqa: SIM905
 _MOST = 5
 
@@ -71,7 +78,14 @@ def parts_of(query: str) -> tuple[QuestionPart, ...]:
     if not ends or _CODE.search(query) or is_message(query):
         return ()
     # What does not begin with a verb says more of what is before it.
-    starts = [0, *(end for start, end in ends if _is_request(text[end:], sure=_is_sure(text[start:end])))]
+    starts = [
+        0,
+        *(
+            end
+            for start, end in ends
+            if _is_request(text[end:], sure=_is_sure(text[start:end])) and not _undoes(text[end:], text)
+        ),
+    ]
     if not 1 < len(starts) <= _MOST or not _is_request(text, sure=False):
         return ()
     stops = [*(start for start, end in ends if end in starts), len(text)]
@@ -84,6 +98,13 @@ def parts_of(query: str) -> tuple[QuestionPart, ...]:
 def _is_sure(between: str) -> bool:
     """Whether what stands between two clauses joins no names."""
     return between.strip().lower() != "and"
+
+
+def _undoes(clause: str, first: str) -> bool:
+    """Whether a clause does the opposite of the first one to the same object: ``and show it at frame 40``."""
+    verb, *objects = _FRAME.sub("", clause, count=1).lower().split(maxsplit=2)
+    before, _, _ = _FRAME.sub("", first, count=1).lower().partition(" ")
+    return {verb, before} in _OPPOSITES and not _PRONOUNS.isdisjoint(objects[:1])
 
 
 def _is_request(text: str, *, sure: bool) -> bool:

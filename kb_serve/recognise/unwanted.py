@@ -1,10 +1,13 @@
-"""What a question is not about: what it does without (``delete object without ops``), how its script runs."""
+"""What a question is not about: what it does without (``delete object without ops``), what must not happen, how its
+script runs.
+"""
 
 from __future__ import annotations
 
 import re
 from typing import NamedTuple
 
+from kb_build.index.analysis import stem
 from kb_build.symbols.api_names import OPERATORS
 from kb_serve.recognise.message_patterns import is_message
 
@@ -14,10 +17,15 @@ _OPERATORS = rf"{_ANY}(?:bpy\.ops\b(?!\.\w)|ops\b|operators?\b)"
 _OVERRIDE = rf"{_ANY}(?:context\s)?overrid(?:e|es|ing)\b"
 # "without operator buttons" is about buttons.
 _END = r"(?=\W*$|[,.;:!?)]|\s(?:and|at|but|by|for|from|in|nor|on|or|so|that|to|when|while|with)\b)"
+# Means that there are others than: what moves, aims and shapes things. "Without a shadow" asks for a setting.
+_MEANS = rf"{_ANY}(?P<means>constraint|driver|keyframe|modifier)s?\b"
 _THING = rf"(?:{_OPERATORS}|{_OVERRIDE}){_END}"
 _LACKING = r"(?:without|w/o|not(?=\s(?:using|calling))|instead\sof|rather\sthan|no(?=\s[\w.]+(?:\s\w+)?\W*$))"
 _STATED = r"(?<!\bis)(?<!\bare)(?<!\bhas)(?<!\bhave)"  # "there is no operator" says what is the case
 _UNWANTED = re.compile(rf"{_STATED},?\s\(?{_LACKING}\s{_THING}(?:\s(?:or|and|nor)\s{_THING})*\)?", re.I)
+_OTHER_MEANS = re.compile(rf"{_STATED}\s(?:without|w/o|not\susing)\s{_MEANS}{_END}", re.I)
+_EXPORTED = re.compile(r"\bexport", re.I)  # as it is without its modifiers
+_SPARED = re.compile(rf"\swithout\s\w+ing\s(?:it|them){_END}", re.I)
 _WHY = re.compile(r"why\b", re.I)  # asks what the case is, not how to do something
 _OF_OPERATORS = re.compile(_OPERATORS, re.I)
 _CODE = "python"  # who says so writes code
@@ -41,23 +49,37 @@ _ABOUT_VERSIONS = re.compile(
 
 
 class Wanted(NamedTuple):
-    """A question without what it does not want; ``operators``: whether they will do."""
+    """A question without what it does not want; ``operators``: whether they will do; ``without``: the stem of the means
+    that will not, if there is one.
+    """
 
     text: str
     operators: bool = True
+    without: str = ""
 
 
 def without_unwanted(query: str) -> Wanted:
     """A question, its blanks single, as it would be asked by who only knows what is wanted."""
     if is_message(query) or _WHY.match(query):
         return Wanted(query)
-    asked = _without_run(_without_version(query))
-    found = _UNWANTED.search(asked)
-    if found is not None:
-        asked = " ".join((asked[: found.start()] + asked[found.end() :]).split())
+    asked = _SPARED.sub("", _without_run(_without_version(query)))
+    asked, unwanted = _take_out(_UNWANTED, asked)
+    asked, means = _take_out(_OTHER_MEANS, asked) if not _EXPORTED.search(asked) else (asked, None)
     code = f" {_CODE}" if asked != query else ""
-    are_unwanted = found is not None and _OF_OPERATORS.search(found[0]) is not None and OPERATORS not in asked
-    return Wanted(asked + code, operators=not are_unwanted)
+    are_unwanted = unwanted is not None and _OF_OPERATORS.search(unwanted[0]) is not None
+    return Wanted(
+        asked + code,
+        operators=not are_unwanted or OPERATORS in asked,
+        without=stem(means["means"].lower()) if means else "",
+    )
+
+
+def _take_out(pattern: re.Pattern[str], text: str) -> tuple[str, re.Match[str] | None]:
+    """(a text without the first place that a pattern fits, that place)."""
+    found = pattern.search(text)
+    if found is None:
+        return text, None
+    return " ".join((text[: found.start()] + text[found.end() :]).split()), found
 
 
 def _without_version(query: str) -> str:

@@ -137,13 +137,16 @@ class Resolver:
         return [reading for reading in readings if reading not in refusing]
 
     def _writable(self, chain: Chain, readings: list[ResolvedChain]) -> list[ResolvedChain]:
-        """The readings without those that cannot be assigned, where a chain is assigned and others can."""
+        """The readings without those that cannot be assigned, where a chain is assigned and others can: but not without
+        those of the class that its variable is always of.
+        """
         if not chain.assigned or len(readings) < 2:
             return readings
+        usual = usual_classes(chain.root)
 
         def is_locked(reading: ResolvedChain) -> bool:
             entry = self._reader.entry(reading.symbols[-1]) if reading.complete else None
-            return entry is not None and entry.is_read_only
+            return entry is not None and entry.is_read_only and usual != [entry.owner]
 
         whole = [reading for reading in readings if reading.complete and reading.fit >= _TOLD]
         locked = [reading for reading in whole if is_locked(reading)]
@@ -232,7 +235,7 @@ class Resolver:
             yield value
             return
         if value.cls.startswith(OPERATORS) and self._has_parameter(value.cls, name):
-            yield ChainValue(value.cls)
+            yield ChainValue(value.cls, self._part_of_macro(name))
             return
         own = (
             self._reader.member_of(value.cls, name)
@@ -272,6 +275,12 @@ class Resolver:
     def _has_parameter(self, path: str, name: str) -> bool:
         symbol = self._reader.symbol(path)
         return symbol is not None and any(parameter.name == name for parameter in symbol.parameters)
+
+    def _part_of_macro(self, name: str) -> str:
+        """The operator that a parameter of another one holds the properties of: ``MESH_OT_rip``; empty for others."""
+        module, mark, own = name.partition("_OT_")
+        path = f"{OPERATORS}{module.lower()}.{own}"
+        return path if mark and self._reader.entry(path) else ""
 
     def _of_collection(self, value: ChainValue, name: str) -> SymbolEntry | None:
         """A member of a collection: of its own class, of all collections, or of those of property groups."""

@@ -82,3 +82,24 @@ def test_a_message_asks_for_nothing_besides(kb: KnowledgeBase) -> None:
 def test_a_class_in_the_list_says_how_one_is_made(kb: KnowledgeBase) -> None:
     text = kb.query("keep the camera pointed at an empty with a constraint").text
     assert "— made by `obj.constraints.new('" in text
+
+
+@pytest.mark.parametrize(
+    ("question", "first"),
+    [
+        ("matrix decompose location rotation scale", "mathutils.Matrix.decompose"),
+        ("driver scripted expression with variable from another object", f"{TYPES}Driver.expression"),
+        ("delete object without operators", f"{TYPES}BlendDataObjects.remove"),
+        ("hide an object without deleting it", f"{TYPES}Object.hide_viewport"),
+    ],
+)
+def test_a_name_that_is_said_with_its_owners_comes_first(
+    kb: KnowledgeBase, question: str, first: str
+) -> None:
+    assert ids(kb, question)[0] == first
+
+
+def test_what_is_done_without_comes_last(kb: KnowledgeBase) -> None:
+    found = ids(kb, "point the camera at an object without a constraint")
+    assert "mathutils.Vector.to_track_quat" in found
+    assert not any("onstraint" in one for one in found)

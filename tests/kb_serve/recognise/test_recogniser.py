@@ -637,3 +637,30 @@ def test_words_that_are_a_name_and_a_label_mean_what_is_used_more(
 def test_icons_are_told_only_of_who_asks_for_icons(kb: KnowledgeBase) -> None:
     assert "bl_icon" not in kb.query("push action to NLA strip").text
     assert "bpy.types.Node.bl_icon" in {hit.id for hit in kb.query("icon NLA of a node").hits}
+
+
+@pytest.mark.parametrize(
+    ("code", "operator"),
+    [
+        ("props.mode = 'CREASES'", "bpy.ops.sculpt.face_sets_init"),
+        ("op.filter_type = 'CONTRAST_INCREASE'", "bpy.ops.sculpt.mask_filter"),
+    ],
+)
+def test_a_value_that_operators_alone_take_is_one_of_their_properties(
+    kb: KnowledgeBase, code: str, operator: str
+) -> None:
+    answer = kb.query(code)
+    assert answer.hits[0].id == operator
+    assert "is not a value of" not in "\n".join(answer.notes)
+
+
+def test_a_value_of_what_a_variable_is_always_called_after_is_refused(kb: KnowledgeBase) -> None:
+    answer = kb.query("obj.type = 'BACK'")
+    assert answer.hits[0].id == "bpy.types.Object.type"
+    assert "is read-only" in answer.notes[0]
+
+
+def test_a_part_of_a_macro_has_the_properties_of_its_operator(kb: KnowledgeBase) -> None:
+    layout = "props = layout.operator('mesh.rip_move')\nprops.MESH_OT_rip."
+    assert kb.query(f"{layout}use_fill = True").notes == ()
+    assert "has no `use_filly`" in kb.query(f"{layout}use_filly = True").notes[0]

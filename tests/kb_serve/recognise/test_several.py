@@ -26,6 +26,8 @@ from kb_serve.recognise.several import parts_of
         ("add an array and mirror modifier", ()),
         ("set it up, then render frames 1 to 5", ("set it up", "render frames 1 to 5")),
         ("shear and bending stiffness", ()),
+        ("hide an object at frame 20 and show it at frame 40", ()),
+        ("hide the cube and show the sphere", ("hide the cube", "show the sphere")),
         ("my cloth falls and then goes through the floor", ()),
         ("how to make a body start animated and then become dynamic", ()),
         ("obj.select_set(True); delete the object", ()),

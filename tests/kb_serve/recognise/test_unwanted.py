@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from kb_serve.recognise.unwanted import without_unwanted
+from kb_serve.recognise.unwanted import Wanted, without_unwanted
 
 
 @pytest.mark.parametrize(
@@ -24,10 +24,27 @@ from kb_serve.recognise.unwanted import without_unwanted
         ("bake the cache of cloth in background mode", "bake the cache of cloth python", True),
         ("bake a fluid headless, without operators", "bake a fluid python", False),
         ("add a light without UI to the scene", "add a light to the scene python", True),
+        ("hide an object without deleting it", "hide an object python", True),
     ],
 )
 def test_what_is_not_wanted_is_left_out(query: str, text: str, operators: bool) -> None:
-    assert without_unwanted(query) == (text, operators)
+    assert without_unwanted(query) == (text, operators, "")
+
+
+@pytest.mark.parametrize(
+    ("query", "text", "without"),
+    [
+        (
+            "point the camera at an object without a constraint",
+            "point the camera at an object python",
+            "constraint",
+        ),
+        ("move a cube without using keyframes, by script", "move a cube, by script python", "keyfram"),
+        ("mirror a mesh without modifiers", "mirror a mesh python", "modifi"),
+    ],
+)
+def test_other_means_are_asked_for(query: str, text: str, without: str) -> None:
+    assert without_unwanted(query) == (text, True, without)
 
 
 @pytest.mark.parametrize(
@@ -49,12 +66,15 @@ def test_what_is_not_wanted_is_left_out(query: str, text: str, operators: bool) 
         "cloth without self collision",
         "operator without undo",
         "panel without operator buttons",
+        "export an fbx without modifiers",
+        "render without shadows",
+        "curve without driver variables",
     ],
 )
 def test_what_is_asked_for_stays(query: str) -> None:
-    assert without_unwanted(query) == (query, True)
+    assert without_unwanted(query) == Wanted(query)
 
 
 def test_a_long_question_is_read_once() -> None:
     query = f"delete {'  ' * 200_000} without object"
-    assert without_unwanted(query) == (query, True)
+    assert without_unwanted(query) == Wanted(query)
