@@ -6,7 +6,8 @@ import ast
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import called_name, children, run_with
+from kb_build.flow.trees import APART, called_name, children, run_with
+from kb_check.bodies import bodies_of
 from kb_check.line_ranges import LineRanges
 from kb_check.script import once_per_script
 
@@ -30,7 +31,7 @@ def _runs(body: Sequence[ast.stmt]) -> bool:
     """Whether a module calls anything when it is run."""
     return any(
         isinstance(getattr(node, "value", None), ast.Call)
-        or (isinstance(node, (ast.If, ast.For, ast.With, ast.Try, ast.While)) and _runs(node.body))
+        or (not isinstance(node, APART) and any(map(_runs, bodies_of(node))))
         for node in body
     )
 

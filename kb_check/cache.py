@@ -135,7 +135,7 @@ def _to_json(finding: Finding) -> list[Any]:
     edits = [[*_numbers(edit.span), edit.text] for edit in fix.edits] if fix else []
     return [
         finding.rule, finding.severity, _numbers(finding.span), finding.message, finding.symbol,
-        list(finding.instead), [fix.title, fix.sure, edits] if fix else None,
+        list(finding.instead), [fix.title, fix.sure, edits] if fix else None, list(finding.absent),
     ]  # fmt: skip
 
 
@@ -144,8 +144,8 @@ def _numbers(span: Span) -> list[int]:
 
 
 def _from_json(row: Any) -> Finding:
-    rule, severity, span, message, symbol, instead, fix = row
+    rule, severity, span, message, symbol, instead, fix, absent = row
     if fix is not None:
         title, sure, edits = fix
         fix = Fix(title, tuple(Edit(Span(*numbers), text) for *numbers, text in edits), sure)
-    return Finding(rule, severity, Span(*span), message, symbol, tuple(instead), fix)
+    return Finding(rule, severity, Span(*span), message, symbol, tuple(instead), fix, tuple(absent))

@@ -131,7 +131,7 @@ def _callers(script: Script, named: list[ast.Name]) -> list[_Function] | None:
     """
     found: list[_Function] = []
     for node in named:
-        call = _calls(script).get(node)
+        call = script.calls_of.get(node)
         statement = _around(script).get(call) if call else None
         is_after, function = _standing(script, statement) if statement else (False, None)
         if not is_after:
@@ -139,12 +139,6 @@ def _callers(script: Script, named: list[ast.Name]) -> list[_Function] | None:
                 return None
             found.append(function)
     return found if named else None
-
-
-@once_per_script
-def _calls(script: Script) -> dict[ast.expr, ast.Call]:
-    """What is called → the call."""
-    return {node.func: node for node in script.all(ast.Call)}
 
 
 @once_per_script

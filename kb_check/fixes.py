@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING
 
 from kb_check.reading import read_source
 from kb_check.salvage import parses
-from kb_check.text_edits import Text, apart
+from kb_check.text_edits import Text, apart, largest
 from simworlds.files import staged_file
 from simworlds.terminal.exact import print_exact
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
     from pathlib import Path
 
-    from kb_check.findings import Finding
+    from kb_check.findings import Finding, Fix
     from kb_check.source import Source
 
 _CONTROL = re.compile(rb"[\x00-\x1f\x7f]")
@@ -43,18 +43,24 @@ def is_fixable(finding: Finding, *, unsafe: bool) -> bool:
 def apply_fixes(source: Source, findings: Iterable[Finding], *, unsafe: bool = False) -> Fixed:
     """Applies fixes in order; one that overlaps an earlier one is left for the next round.
 
-    Nothing is changed in a notebook, in what could not be read, and where the result would not parse.
+    One after which the text would not parse is left out. Nothing is changed in a notebook, and in what could not be
+    read.
     """
     nothing = Fixed(source.text, 0)
     if source.cells or source.fault:
         return nothing
     text = Text.original(source.text)
     fixes = [each.fix for each in findings if each.fix is not None and is_fixable(each, unsafe=unsafe)]
-    chosen = list(apart(text, fixes, lambda fix: fix.edits))
     newline = "\r\n" if "\r\n" in source.text[: source.text.find("\n") + 1] else "\n"
-    edits = (replace(edit, text=edit.text.replace("\n", newline)) for fix in chosen for edit in fix.edits)
-    changed = text.edited(edits).code
-    return Fixed(changed, len(chosen)) if changed != source.text and parses(changed) else nothing
+
+    def fixed(some: Sequence[Fix]) -> str:
+        edits = (edit for fix in some for edit in fix.edits)
+        return text.edited(replace(edit, text=edit.text.replace("\n", newline)) for edit in edits).code
+
+    together = list(apart(text, fixes, lambda fix: fix.edits))
+    chosen = largest(together, lambda some: parses(fixed(some)))
+    changed = fixed(chosen)
+    return Fixed(changed, len(chosen)) if changed != source.text else nothing
 
 
 def write_fixed(path: Path, before: bytes, after: bytes) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import builtins
+import logging
 import re
 import sqlite3
 import textwrap
@@ -47,6 +48,7 @@ _IS_NONE = re.compile(NO_VALUE)  # what is said of a value that no Blender has
 _ARGUMENT = "("  # in the path of an argument: of the values of properties an answer tells by itself
 _GONE = "unknown-attribute"  # what is wrong behind a name that is gone, its successor may take otherwise
 _SIGNS = "=([*"  # one of which such code has
+_LOG = logging.getLogger(__name__)
 # What code does that is more than a name.
 _DOES = (
     ast.Assign, ast.AugAssign, ast.AnnAssign, ast.Call, ast.BinOp, ast.Compare, ast.Subscript, ast.FunctionDef,
@@ -72,6 +74,9 @@ def notes_on_code(reader: BaseReader, query: str) -> tuple[str, ...]:
             findings = [*_news(checker.check(code, rules=(*_RULES, _NEVER_TRUE, _GONE)))]
     except sqlite3.DatabaseError as error:
         raise checker.names.reader.damaged(error) from error
+    except Exception as error:  # what goes wrong with a rule takes no answer with it
+        _LOG.warning("the code in %.300r could not be checked: %s: %s", query, type(error).__name__, error)
+        return ()
     notes = list(dict.fromkeys(_note(finding, lines) for finding in findings))
     if left := len(notes[_MOST:]):
         notes[_MOST:] = [f"{left} more: `blender_check` lists them."]

@@ -63,7 +63,7 @@ class KnownNames:
         self._notes = Notes(reader)
         self._operators = OperatorWords(reader)
         self._enum_values = EnumValues(reader)
-        self._members: dict[tuple[str, str], RemovedSymbol | None] = {}
+        self._member = lru_cache(maxsize=_KEPT)(self._former_member)
         self._lacking = lru_cache(maxsize=_KEPT)(self._lacking_member)
 
     @property
@@ -97,11 +97,8 @@ class KnownNames:
         removed = self._member(owner, name)
         return self._removed(for_reading(removed)).replacement if removed else ""
 
-    def _member(self, owner: str, name: str) -> RemovedSymbol | None:
-        key = owner, name
-        if key not in self._members:
-            self._members[key] = self._lookup.of_member(owner, name) if owner else self._lookup.of_path(name)
-        return self._members[key]
+    def _former_member(self, owner: str, name: str) -> RemovedSymbol | None:
+        return self._lookup.of_member(owner, name) if owner else self._lookup.of_path(name)
 
     def _of_former(self, path: str, part: str) -> RemovedSymbol | None:
         """A part, ``(x)``, ``(x):X`` or ``.inputs["X"]``, of what a function, operator or node took the place of."""

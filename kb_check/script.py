@@ -142,6 +142,11 @@ class Script:
             and isinstance(node.value.value, str)
         )
 
+    @cached_property
+    def calls_of(self) -> dict[ast.expr, ast.Call]:
+        """What is called → the call."""
+        return {call.func: call for call in self.all(ast.Call)}
+
     def type_of(self, node: ast.expr) -> Type | None:
         """The type of an expression; None if it was not reached."""
         return self.analysis.types.get(node)

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from kb_check.findings import Edit, Span
 
 _T = TypeVar("_T")
+_MOST_TRIALS = 60  # to find the edits that leave a text which cannot be read
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,25 @@ class Text:
             origins += (self.origins[min(first + number, last)] for number in range(edit.text.count("\n")))
             at, line = end, max(last, line)
         return Text("".join([*parts, self.code[at:]]), (*origins, *self.origins[line:]))
+
+
+def largest(items: Sequence[_T], holds: Callable[[Sequence[_T]], bool]) -> list[_T]:
+    """Items for which a condition holds together: all of them, or without those that break it."""
+    trials = _MOST_TRIALS
+
+    def among(some: Sequence[_T]) -> list[_T]:
+        nonlocal trials
+        trials -= 1
+        if trials < 0 or not some:
+            return []
+        if holds(some):
+            return list(some)
+        if len(some) == 1:
+            return []
+        halves = [*among(some[: len(some) // 2]), *among(some[len(some) // 2 :])]
+        return halves if holds(halves) else []
+
+    return among(items)
 
 
 def apart(text: Text, items: Iterable[_T], edits: Callable[[_T], Sequence[Edit]]) -> Iterator[_T]:

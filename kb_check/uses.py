@@ -33,9 +33,8 @@ _PYTHONS: dict[str, type] = {"bool": bool, "int": int, "float": float, "str": st
 
 def are_refused(script: Script, node: ast.Attribute, symbol: Symbol) -> bool:
     """Whether what a script does with an attribute surely fails where it is a symbol."""
-    for call in script.all(ast.Call):
-        if call.func is node:
-            return _refuses_call(script, symbol, call)
+    if call := script.calls_of.get(node):
+        return _refuses_call(script, symbol, call)
     member = script.api.member(symbol.owner, symbol.name)
     return member is not None and any(_lacks(script, member.type, name) for name in _read(script, node))
 

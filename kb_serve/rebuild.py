@@ -96,9 +96,10 @@ class Upkeep:
         note = other_in_use(have, in_use)
         if in_use is None or not note or (asked and not is_same_minor(in_use, have)):
             return ""
-        if self.state == "failed":
+        is_built = self._job is not None and is_same_minor(self._job.version, in_use)
+        if is_built and self.state == "failed":
             then = f"Building its base failed: {self.reason}"
-        elif self.state == "running" or (self.enabled and is_newer(in_use, have)):
+        elif is_built:
             then = "Its base is being built in the background; until then, answers come from this one."
         else:
             then = how_to_build(in_use, self.blender_exe)
@@ -188,7 +189,7 @@ class Upkeep:
         return _Job(version, "built", [sys.executable, "-m", *words])
 
     def _perform(self, job: _Job) -> None:
-        self.state = "running"
+        self.state, self.reason, self.progress = "running", "", ""
         write_line(sys.stderr, f"The knowledge base of Blender {job.version} is being {job.doing} ...")
         try:
             self._process = subprocess.Popen(

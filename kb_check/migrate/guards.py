@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 _BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")
 _OPENS = (
-    ast.If, ast.For, ast.While, ast.With, ast.Try, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef,
+    ast.If, ast.For, ast.While, ast.With, ast.Try, ast.TryStar, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef,
     ast.AsyncFor, ast.AsyncWith, ast.Match,
 )  # fmt: skip
 

@@ -47,8 +47,15 @@ class KeptVersion:
             return ""
         if _known(self.checker, path) if self.checker is not None else self._had(path):
             return ""
-        above = split_path(path)[0]
-        return "" if above and self.came_later(above, target) else first
+        return "" if self._is_in_newer(path, target) else first
+
+    def _is_in_newer(self, path: str, target: BaseReader) -> bool:
+        """Whether anything that a symbol belongs to came later, too."""
+        while path := split_path(path)[0]:
+            since = target.arrival(path)[0]
+            if since and version_of(since) > self.version:
+                return True
+        return False
 
     def _has(self, path: str, target: BaseReader) -> bool:
         if self.checker is not None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import children, walk
 from kb_build.flow.types import Instance, members, without_none
+from kb_check.bodies import bodies_of
 from kb_check.findings import Edit, Span
 from kb_check.migrate.change import Change, Version
 
@@ -96,11 +97,7 @@ class Place:
     def body_of(self, statement: ast.AST) -> list[ast.stmt]:
         """The statements that a statement stands among."""
         around = self.parents.get(statement)
-        for name in ("body", "orelse", "finalbody", "handlers"):
-            held = getattr(around, name, None)
-            if isinstance(held, list) and statement in held:
-                return held  # pyright: ignore[reportUnknownVariableType]
-        return []
+        return next((body for body in bodies_of(around) if statement in body), []) if around else []
 
     def is_a(self, node: ast.expr, *classes: str) -> bool:
         """Whether an expression is surely an instance of one of some classes, or of what derives from them."""

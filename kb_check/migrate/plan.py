@@ -17,10 +17,10 @@ from kb_check.migrate.rewrites.matrix_products import BEFORE_PRODUCTS
 from kb_check.migrate.version_tests import reaches
 from kb_check.package import paths_in_package
 from kb_check.salvage import parses
-from kb_check.text_edits import Text, apart
+from kb_check.text_edits import Text, apart, largest
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_check.checker import Checker, Read
     from kb_check.findings import Edit
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 _ROUNDS = 40
 _TOLD = 160
 _NEWER = "newer-name"  # what reports call a name that a Blender to be kept does not have yet
-_MOST_TRIALS = 60  # to find the changes that leave a text which cannot be read
 
 
 @dataclass
@@ -136,7 +135,7 @@ class Migrator:
                 [*edits, *{edit: None for change in chosen for edit in change.additions}]
             )
 
-        chosen = _largest(changes, lambda some: parses(made(some).code))
+        chosen = largest(changes, lambda some: parses(made(some).code))
         new = made(chosen)
         if new.code == state.text.code:
             return False
@@ -319,25 +318,6 @@ def _members(node: ast.AST) -> frozenset[str]:
 
 def _came(path: str, first: str) -> str:
     return f"`{as_code(path)}` is there from Blender {first} on."
-
-
-def _largest(changes: Sequence[Change], holds: Callable[[Sequence[Change]], bool]) -> list[Change]:
-    """Changes for which a condition holds together: all of them, or without those that break it."""
-    trials = _MOST_TRIALS
-
-    def among(some: Sequence[Change]) -> list[Change]:
-        nonlocal trials
-        trials -= 1
-        if trials < 0 or not some:
-            return []
-        if holds(some):
-            return list(some)
-        if len(some) == 1:
-            return []
-        halves = [*among(some[: len(some) // 2]), *among(some[len(some) // 2 :])]
-        return halves if holds(halves) else []
-
-    return among(changes)
 
 
 def _told(text: Text, change: Change, *, guarded: bool) -> Done:

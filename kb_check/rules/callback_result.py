@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.trees import called_name, children
 from kb_build.symbols.api_names import TYPES
+from kb_check.bodies import bodies_of
 from kb_check.calls import callee_of
 from kb_check.findings import Finding, Fix
 from kb_check.literals import set_of
@@ -156,11 +157,18 @@ def _runs_past(body: list[ast.stmt]) -> bool:
     return (
         isinstance(last, _SIMPLE)
         and not (isinstance(last, ast.Expr) and called_name(last.value) in _MAY_END)
-        and not any(
-            isinstance(statement, (ast.Return, ast.Raise, ast.While, ast.Try, ast.Match))
-            for statement in body
-        )
+        and not any(map(_may_leave, body))
     )
+
+
+def _may_leave(statement: ast.stmt) -> bool:
+    """Whether a statement may return on all of its ways."""
+    if isinstance(statement, (ast.Return, ast.Raise, ast.While, ast.Try, ast.TryStar, ast.Match)):
+        return True
+    bodies = [body for body in bodies_of(statement) if body]
+    both = not isinstance(statement, ast.If) or len(bodies) > 1
+    inner = isinstance(statement, (ast.If, ast.With, ast.AsyncWith)) and both
+    return inner and all(any(map(_may_leave, body)) for body in bodies)
 
 
 def _results(value: ast.expr | None) -> Iterator[ast.expr | None]:

@@ -106,14 +106,18 @@ def _given_none(script: Script, given: Given) -> Iterator[Finding]:
 
 def _by_index(script: Script, value: ast.expr, index: str) -> Fix | None:
     """``groups.active = None`` → ``groups.active_index = -1``."""
-    for node in script.all(ast.Assign) if index else ():
-        match node:
-            case ast.Assign(targets=[ast.Attribute(value=owner)], value=given) if given is value:
-                edit = Edit(script.span(node), f"{ast.unparse(owner)}.{index} = -1")
-                return Fix(f"Write {index} = -1", (edit,), sure=True)
-            case _:
-                pass
-    return None
+    match _assignments(script).get(value) if index else None:
+        case ast.Assign(targets=[ast.Attribute(value=owner)]) as node:
+            edit = Edit(script.span(node), f"{ast.unparse(owner)}.{index} = -1")
+            return Fix(f"Write {index} = -1", (edit,), sure=True)
+        case _:
+            return None
+
+
+@once_per_script
+def _assignments(script: Script) -> dict[ast.expr, ast.Assign]:
+    """What is assigned → the statement."""
+    return {node.value: node for node in script.all(ast.Assign)}
 
 
 def _got(script: Script, node: ast.expr) -> ast.Call | None:

@@ -51,8 +51,10 @@ from kb_check.documented import LENGTHS
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.literals import number
 from kb_check.made_here import bindings, callee_path
+from kb_check.raised import LACKS_KEY, REFUSES
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
+from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -79,7 +81,7 @@ _OF_COLLECTIONS = frozenset(
 
 def _check(script: Script) -> Iterator[Finding]:
     for node in script.all(ast.Subscript):
-        if (function := nothing_from(script, node.value)) and not _is_tried(script, node):
+        if (function := nothing_from(script, node.value)) and not is_tried(script, node, REFUSES):
             told = f"`{function}` returns nothing: there are no items."
             yield Finding(RULE.id, "error", script.span(node), told, function)
         if _is_of_declaration(script, node):
@@ -108,7 +110,7 @@ def _is_of_declaration(script: Script, node: ast.Subscript) -> bool:
                 and is_read
                 and declares
                 and not knows_both
-                and not _is_tried(script, node)
+                and not is_tried(script, node, REFUSES)
             )
         case _:
             return False
@@ -162,7 +164,7 @@ def _of_result(script: Script, node: ast.Subscript) -> str:
     )
     names = [result.name for result in symbol.returns] if symbol else []
     key = node.slice.value if isinstance(node.slice, ast.Constant) else None
-    if not names or not isinstance(key, str) or key in names or _is_tried(script, node):
+    if not names or not isinstance(key, str) or key in names or is_tried(script, node, LACKS_KEY):
         return ""
     advice = ""
     if cls := _PARTS.get(key) if "geom" in names else None:
@@ -170,14 +172,6 @@ def _of_result(script: Script, node: ast.Subscript) -> str:
             f" Choose from its `geom`: `[e for e in result['geom'] if isinstance(e, bmesh.types.{cls})]`."
         )
     return f"`{path}` gives {', '.join(f'`{name}`' for name in names)}, and no {key!r}.{advice}"
-
-
-def _is_tried(script: Script, node: ast.expr) -> bool:
-    """Whether an error here may be caught: that of a key."""
-    return any(
-        outer.lineno <= node.lineno <= (outer.body[-1].end_lineno or 0)
-        for outer in script.all(ast.Try, ast.With)
-    )
 
 
 @once_per_script

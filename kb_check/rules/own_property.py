@@ -167,8 +167,11 @@ def _compared(script: Script) -> dict[ast.AST, ast.expr]:
     found: dict[ast.AST, ast.expr] = {}
     for node in script.all(ast.Compare):
         match node:
-            case ast.Compare(ops=[ast.Eq() | ast.NotEq()], comparators=[ast.Constant() as other]):
-                found[node.left] = other
+            case (
+                ast.Compare(left=part, ops=[ast.Eq() | ast.NotEq()], comparators=[ast.Constant() as other])
+                | ast.Compare(left=ast.Constant() as other, ops=[ast.Eq() | ast.NotEq()], comparators=[part])
+            ):
+                found[part] = other
             case ast.Compare(
                 ops=[ast.In() | ast.NotIn()], comparators=[ast.Set() | ast.Tuple() | ast.List() as several]
             ):

@@ -39,6 +39,7 @@ from kb_build.flow.types import (
     literal_text,
     members,
 )
+from kb_check.brackets import bracketed
 from kb_check.calls import calls
 from kb_check.conversions import misfit
 from kb_check.findings import Edit, Finding, Fix
@@ -110,7 +111,7 @@ def _of_operator(script: Script, call: CallSite) -> Iterator[Finding]:
             f"`{path}` takes no properties by place, only an execution context (`'INVOKE_DEFAULT'`, "
             f"`'EXEC_DEFAULT'` …) and whether to push an undo step: {_advice(parameter)}",
             path, (f"{path}({parameter.name})",) if parameter else (),
-            _naming(script, argument, parameter, sure=True) if parameter else None,
+            _naming(script, call, argument, parameter) if parameter else None,
         )  # fmt: skip
         return
 
@@ -133,7 +134,9 @@ def _is_wrong(script: Script, argument: ast.expr) -> bool:
 
 def _is_number(node: ast.expr) -> bool:
     """Whether an argument is written as a number that nobody writes for a truth value."""
-    value = node.operand if isinstance(node, ast.UnaryOp) else node
+    value = node
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
+        value = node.operand
     return (
         isinstance(value, ast.Constant)
         and isinstance(value.value, int)
@@ -223,7 +226,7 @@ def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
         + (f"write `{parameter.name}=`." if parameter else f"`{callee.symbol.signature}`.")
         + "".join(f" {lacking.message}" for lacking in gone),
         path, (f"{path}({rest[0]})",),
-        _naming(script, extra, parameter, sure=True) if parameter else None,
+        _naming(script, call, extra, parameter) if parameter else None,
     )  # fmt: skip
 
 
@@ -244,13 +247,16 @@ def _by_place(script: Script, call: CallSite) -> Fix | None:
     return Fix("Leave out the names", edits, sure=True)
 
 
-def _naming(script: Script, argument: ast.expr, parameter: Parameter, *, sure: bool) -> Fix:
+def _naming(script: Script, call: CallSite, argument: ast.expr, parameter: Parameter) -> Fix:
+    """An argument with the name of a parameter."""
+    place = call.node.args.index(argument)
+    span = bracketed(script, argument, call.node.args[place - 1] if place else call.node.func)
     is_set = parameter.type == "enum" and isinstance(parameter.default, list)
     if is_set and isinstance(argument, ast.Constant):  # one item of several that may be given
-        edit = Edit(script.span(argument), f"{parameter.name}={{{argument.value!r}}}")
+        edit = Edit(span, f"{parameter.name}={{{argument.value!r}}}")
     else:
-        edit = Edit.before(script.span(argument), f"{parameter.name}=")
-    return Fix(f"Write {parameter.name}=", (edit,), sure=sure)
+        edit = Edit.before(span, f"{parameter.name}=")
+    return Fix(f"Write {parameter.name}=", (edit,), sure=True)
 
 
 RULE = Rule("positional-argument", "error", "An argument without its name where Blender takes none", _check)

@@ -206,7 +206,7 @@ def _calling(script: Script, row: Resolution, symbol: Symbol) -> Fix | None:
     ):
         return None
     required = [parameter for parameter in symbol.parameters if parameter.required]
-    if len(required) != 1 or not symbol.name.endswith("_set"):
+    if len(required) != 1 or not symbol.name.endswith("_set") or isinstance(statement.value, ast.Tuple):
         return None
     target, value = script.text(script.span(row.node)), script.text(script.span(statement.value))
     return Fix("Call it", (Edit(script.span(statement), f"{target}({value})"),), sure=True)

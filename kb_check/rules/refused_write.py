@@ -40,6 +40,7 @@ from kb_check.literals import times_bound
 from kb_check.made_here import bindings, callee_path
 from kb_check.own_classes import own_classes
 from kb_check.rule import Rule
+from kb_check.script import once_per_script
 from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ _DRAWING = tuple(f"{T}{name}" for name in ("Header", "Menu", "Panel"))
 _ADDING = frozenset({"append", "prepend"})
 _SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda)
 _VECTORS = frozenset(f"mathutils.{name}" for name in ("Color", "Euler", "Quaternion", "Vector"))
-_DEEPEST, _MOST_VALUES = 8, 8  # steps, and what a name is bound to, to what something belongs to
+_MOST_VALUES = 8  # that a name is bound to, to tell what something belongs to
 _DOTS = 3
 
 
@@ -149,7 +150,7 @@ def _is_checked(script: Script, node: ast.Attribute | ast.Subscript) -> bool:
     )
 
 
-def _holder(script: Script, node: ast.expr, depth: int = _DEEPEST) -> str:
+def _holder(script: Script, node: ast.expr) -> str:
     """The class of the data-block that something surely belongs to and that is locked; empty for none."""
     kind = script.type_of(node)
     if isinstance(kind, Instance) and kind.sure:
@@ -159,18 +160,33 @@ def _holder(script: Script, node: ast.expr, depth: int = _DEEPEST) -> str:
             return "" if kind.cls == ID or kind.cls in _OF_WINDOWS else kind.cls
     match node:
         case ast.Attribute(value=owner):
-            return _holder(script, owner, depth - 1) if depth else ""
+            return _holder(script, owner)
         case ast.Subscript(value=owner):
-            return _holder(script, owner, depth - 1) if depth and _is_struct(script, node) else ""
-        case ast.Name(id=name) if depth:
-            values = bindings(script).get(name, [])
-            held = {
-                _holder(script, value, depth - 1) if isinstance(value, (ast.Attribute, ast.Subscript)) else ""
-                for value in values[:_MOST_VALUES]
-            }
-            return held.pop() if len(held) == 1 and len(values) <= _MOST_VALUES else ""
+            return _holder(script, owner) if _is_struct(script, node) else ""
+        case ast.Name(id=name):
+            return _holder_of_name(script, name)
         case _:
             return ""
+
+
+def _holder_of_name(script: Script, name: str) -> str:
+    """The one holder of all that a name is bound to; empty for several, for none, and for what leads to itself."""
+    known = _holders_of_names(script)
+    if name not in known:
+        known[name] = ""  # until it is found
+        values = bindings(script).get(name, [])
+        held = {
+            _holder(script, value) if isinstance(value, (ast.Attribute, ast.Subscript)) else ""
+            for value in values[: _MOST_VALUES + 1]
+        }
+        known[name] = held.pop() if len(held) == 1 and len(values) <= _MOST_VALUES else ""
+    return known[name]
+
+
+@once_per_script
+def _holders_of_names(_script: Script) -> dict[str, str]:
+    """Those that were asked for."""
+    return {}
 
 
 def _is_struct(script: Script, node: ast.expr) -> bool:

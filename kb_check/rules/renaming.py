@@ -226,10 +226,18 @@ def _given_or_compared(script: Script, row: Resolution) -> Iterator[ast.expr]:
     """What a statement assigns to a property, or compares with it: the items of what is written out."""
     if isinstance(row.node, ast.Attribute) and (value := assigned(row.statement, row.node)) is not None:
         yield from _parts(script, value)
+    for side in _compared(script).get(row.node, ()):
+        yield from _parts(script, side)
+
+
+@once_per_script
+def _compared(script: Script) -> dict[ast.AST, list[ast.expr]]:
+    """Each side of a comparison → the others."""
+    found: dict[ast.AST, list[ast.expr]] = {}
     for node in script.all(ast.Compare):
-        sides = (node.left, *node.comparators)
-        if row.node in sides:
-            yield from (part for side in sides if side is not row.node for part in _parts(script, side))
+        sides = [node.left, *node.comparators]
+        found |= {side: [other for other in sides if other is not side] for side in sides}
+    return found
 
 
 def _parts(script: Script, value: ast.expr) -> list[ast.expr]:

@@ -40,6 +40,7 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.object_data import OBJECT_DATA
 from kb_build.symbols.paths import last_name
 from kb_check.annotated_parameters import ONE_IS_WRONG, is_annotated
+from kb_check.brackets import bracketed
 from kb_check.calls import nothing_from, other_way
 from kb_check.conversions import misfit
 from kb_check.documented import layer_misfit
@@ -69,6 +70,7 @@ _HELD = {
     "bmesh.types.BMLoopUV": "loop[layer].uv = (u, v)", "bmesh.types.BMDeformVert": "vert[layer][group_index] = weight",
 }  # fmt: skip
 _LONGEST_INT = 2**31
+_RGB = 3  # numbers of a colour without alpha
 _TARGET_ID = f"{T}DriverTarget.id"
 
 
@@ -199,13 +201,13 @@ def _literal_fix(script: Script, taker: Taker, node: ast.Constant) -> Fix | None
 def _color_fix(script: Script, taker: Taker, wrong: Misfit, parts: list[ast.expr]) -> Fix | None:
     if not all(_is_number(script, part) for part in parts):
         return None
-    before = script.span(parts[2]) if len(parts) > 2 else None
-    if before is None:
+    if len(parts) < _RGB:
         return None
+    before = bracketed(script, parts[2], parts[1])
     if (wrong.length, taker.sizes) == (3, (4,)):
         return Fix("Add alpha", (Edit.behind(before, ", 1.0"),), sure=True)
     if (wrong.length, taker.sizes) == (4, (3,)):
-        last = script.span(parts[3])
+        last = bracketed(script, parts[3], parts[2])
         cut = Span(before.end_line, before.end_column, last.end_line, last.end_column)
         return Fix("Leave out alpha", (Edit(cut, ""),), sure=True)
     return None

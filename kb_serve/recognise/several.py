@@ -104,7 +104,7 @@ def _undoes(clause: str, first: str) -> bool:
     """Whether a clause does the opposite of the first one to the same object: ``and show it at frame 40``."""
     verb, *objects = _FRAME.sub("", clause, count=1).lower().split(maxsplit=2)
     before, _, _ = _FRAME.sub("", first, count=1).lower().partition(" ")
-    return {verb, before} in _OPPOSITES and not _PRONOUNS.isdisjoint(objects[:1])
+    return frozenset({verb, before}) in _OPPOSITES and not _PRONOUNS.isdisjoint(objects[:1])
 
 
 def _is_request(text: str, *, sure: bool) -> bool:

@@ -46,6 +46,8 @@ NASTY = {
     "format": "%(path)s", "json": '{"query": "cloth"}', "xml": "<?xml version='1.0'?>", "turkish": "İıŞş",
     "sharp s": "STRASSE ß",
     "math": "𝒄𝒍𝒐𝒕𝒉", "full width": "ＣｌｏｔｈＳｅｔｔｉｎｇｓ", "cyrillic a": "Cloth" + "\u0430",
+    "getattr of nothing": 'getattr(ob..data, "name")', "getattr of a number": 'getattr(ob.3, "name")',
+    "prop of much": f"layout.prop({'.'.join('a' * 30)}, 'name')",
     "zero width": "Cl\u200both",
 }  # fmt: skip
 EMPTY = ["", " ", "\n\t ", "\x00", "\x00\x00 \x00", "\u2003", "\x1f\x1e"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_check.brackets import bracketed
 from kb_check.findings import Edit
 from kb_check.migrate.change import Change
 from kb_check.migrate.rewrite import Rewrite
@@ -29,8 +30,7 @@ def _propose(place: Place) -> Iterator[Change]:
             and row.symbols
             and all(_has_alpha(place, path) for path in row.symbols)
         ):
-            end = place.script.span(value.elts[-1])
-            edit = Edit.behind(end, ", 1.0")
+            edit = Edit.behind(bracketed(place.script, value.elts[2], value.elts[1]), ", 1.0")
             yield Change(REWRITE.id, (edit,), _REASON, _SOURCE, _SINCE)
 
 

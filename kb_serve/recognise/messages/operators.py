@@ -71,8 +71,7 @@ class Operators:
             recognition.add(OVERRIDE, 0.98, "error message")
             add_guide(ON_OPERATORS, self._reader, recognition)
         for match in forms.first_matches(forms.NOT_AN_OPERATOR, query):
-            names = self._reader.members("bpy.ops").keys() | self._reader.members("bmesh.ops").keys()
-            for name, alike in nearest(match["name"], names, _FEW):
+            for name, alike in nearest(match["name"], self._reader.members("bmesh.ops"), _FEW):
                 if entry := self._reader.entry(f"bmesh.ops.{name}"):
                     recognition.add(entry.path, max(0.82, 0.95 * alike), "similar name")
             recognition.notes.append(f"`bmesh.ops` has no `{match['name']}`.")

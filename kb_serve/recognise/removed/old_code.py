@@ -415,9 +415,9 @@ class OldCode:
         yield from filter(None, map(self._removed.of_path, _quoted_paths(text)))
         for pattern in _PROPERTY_NAMES:
             for match in islice(pattern.finditer(text), _MOST_QUOTED):
-                (chain,) = find_chains(f"{match[1]}.{match[2]}")
-                if old := self.in_chain(chain, self._resolver.resolve(chain), is_quoted=True):
-                    yield old.removed
+                for chain in find_chains(f"{match[1]}.{match[2]}")[:1]:
+                    if old := self.in_chain(chain, self._resolver.resolve(chain), is_quoted=True):
+                        yield old.removed
 
 
 def _is_set_to_item(chain: Chain) -> bool:

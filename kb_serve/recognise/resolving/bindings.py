@@ -38,11 +38,12 @@ def with_bindings(text: str, chains: Sequence[Chain]) -> list[Chain]:
     sockets: list[Chain] = []
     leading: set[int] = set()
     end = 0
+    gap = ""
     for place, chain in enumerate(chains):
         start = text.find(chain.source, end)
-        gap = "".join(text[end:start].split())
+        before, gap = gap, "".join(text[end:start].split())
         end = start + len(chain.source)
-        is_assigned = gap == "=" and _is_single(found, text)
+        is_assigned = gap == "=" and _is_single(found, before)
         rest = _without(found, bound)
         own = _from(chain, bound if is_assigned else rest, leading)
         is_whole = own.steps and not _GOES_ON.match(text, end)
@@ -70,9 +71,11 @@ def _without(found: Sequence[Chain], bound: dict[str, _Binding]) -> dict[str, _B
     return {name: value for name, value in bound.items() if name != found[-1].root}
 
 
-def _is_single(found: Sequence[Chain], text: str) -> bool:
-    """Whether the last chain is one variable by itself: of ``a, b = …`` none is what stands behind."""
-    return bool(found) and not found[-1].steps and not re.search(rf",\s*{found[-1].root}\s*=", text)
+def _is_single(found: Sequence[Chain], before: str) -> bool:
+    """Whether the last chain is one variable by itself: of ``a, b = …`` none is what stands behind. ``before`` stands
+    before it.
+    """
+    return bool(found) and not found[-1].steps and not before.endswith(",")
 
 
 def _iterated(found: Sequence[Chain]) -> str:

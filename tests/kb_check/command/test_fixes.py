@@ -73,6 +73,11 @@ def test_what_would_not_parse_is_not_written() -> None:
     assert apply_fixes(Source("x\n"), [replacing((1, 0, 1, "a b"))]) == apply_fixes(Source("x\n"), [])
 
 
+def test_a_fix_that_would_not_parse_takes_no_other_with_it() -> None:
+    fixed = apply_fixes(Source("x\ny\n"), [replacing((1, 0, 1, "a b")), replacing((2, 0, 1, "z"))])
+    assert (fixed.text, fixed.count) == ("x\nz\n", 1)
+
+
 def test_many_fixes_take_no_more_than_their_share() -> None:
     source = Source("x\n" * 20_000)
     fixed = apply_fixes(source, [replacing((line, 0, 1, "y")) for line in range(1, 20_001)])

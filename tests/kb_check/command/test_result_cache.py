@@ -17,7 +17,14 @@ if TYPE_CHECKING:
 
 SPAN = Span(1, 2, 3, 4)
 FULL = Finding(
-    "a", "warning", SPAN, "é\ud800", "s", ("i", "j"), Fix("t", (Edit(SPAN, "x"), Edit(SPAN, "")), sure=True)
+    "a",
+    "warning",
+    SPAN,
+    "é\ud800",
+    "s",
+    ("i", "j"),
+    Fix("t", (Edit(SPAN, "x"), Edit(SPAN, "")), sure=True),
+    ("k",),
 )
 PLAIN = Finding("b", "error", SPAN, "wrong")
 

@@ -78,6 +78,15 @@ def test_a_guard_for_one_version_does_not_hide_what_another_lacks(checker: Check
     assert [version for version, _ in file.kept] == ["2.79"]
 
 
+def test_what_is_in_a_class_that_came_later_is_guarded_with_it(checker: Checker) -> None:
+    made = 'bpy.context.scene.sequence_editor.{}.new_effect("a", "COLOR", 1, frame_start=1, {})\n'
+    old, new = made.format("sequences", "frame_end=9"), made.format("strips", "length=8")
+    file = migrated(checker, f"import bpy\n{old}", (4, 2))
+    body = file.new.partition("if ")[2]
+    assert [line.strip() for line in body.splitlines()[1:]] == [new.strip(), "else:", old.strip()]
+    assert not file.kept
+
+
 @pytest.mark.parametrize(
     ("line", "versions"),
     [

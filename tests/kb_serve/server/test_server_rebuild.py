@@ -54,6 +54,20 @@ def stopping_blender(home: Path, version: str, then: str) -> Path:
     return path
 
 
+def test_what_became_of_another_versions_base_is_not_told_as_this_ones(
+    home: Path, make_base: MakeBase, serve_from: ServeFrom
+) -> None:
+    (home / "kb" / f"blender-{MINOR}.sqlite").unlink(missing_ok=True)
+    make_base("3.6.0")
+    service = serve_from(home, rebuild=False)
+    upkeep = service.upkeep
+    before = ask(service)[0].notes
+    assert "simworlds kb build" in before[0]
+    upkeep._job = upkeep._building("4.5", {})
+    for upkeep.state, upkeep.reason in (("running", ""), ("failed", "no space on device")):
+        assert ask(service)[0].notes == before
+
+
 @pytest.fixture
 def service(home: Path, serve_from: ServeFrom) -> Service:
     return serve_from(home, rebuild=True)
