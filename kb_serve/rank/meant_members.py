@@ -30,6 +30,7 @@ _OTHER_KIND = 0.6  # what a function counts that is assigned to, or a property t
 _UNCALLED = 0.85  # … and a function of which nothing is known but its name
 _SHARED = 0.5  # what it adds that a member has the words of a name
 _LABEL_ENDS = 0.5  # … of which so much if only its label ends with one of them
+_OF_ALL = 1 / 3  # the share of these words from which on what everything has is meant
 _FUNCTIONS = frozenset({"function", "operator"})
 
 
@@ -59,7 +60,9 @@ def meant_members(missing: MissingName, searcher: Searcher, reader: BaseReader) 
         entry = reader.entry(ref) if split_path(ref)[0] in owners else None
         if entry is not None:
             fit = _fit_of_kind(entry, missing)
-            scored[ref] = score * fit * (1 + _SHARED * _shared(said, entry))
+            shared = _shared(said, entry)
+            if entry.owner != STRUCT or shared >= _OF_ALL:
+                scored[ref] = score * fit * (1 + _SHARED * shared)
     ranked = sorted(scored, key=lambda ref: -scored[ref])[:_MOST]
     best = max(found.values(), default=0.0)
     least = max(_LEAST * best, _NEAR * max(scored.values(), default=0.0))
@@ -83,11 +86,11 @@ def _shared(said: Set[str], entry: SymbolEntry) -> float:
 
 
 def _owners(owner: str, reader: BaseReader) -> Iterator[str]:
-    """What has members that are meant of a class: itself, its bases but for that of all, and its few cases."""
+    """What has members that are meant of a class: itself, its bases, and its few cases."""
     yield owner
     for data in reader.object_data.values() if owner == ID else ():
         yield data
         yield from (entry.path for entry in reader.descendants(data))
-    yield from (entry.path for entry in reader.lineage(owner) if entry.path != STRUCT)
+    yield from (entry.path for entry in reader.lineage(owner))
     cases = [entry.path for entry in reader.descendants(owner)]
     yield from cases if len(cases) <= _MOST_CASES else ()

@@ -47,6 +47,7 @@ def meant(owner: str, name: str, searcher: Searcher, reader: BaseReader) -> Mean
         ("Camera", "far", "Camera.clip_end"),
         ("Light", "intensity", "PointLight.energy"),  # of its cases
         ("ID", "fov", "Camera.angle"),  # of an object's data
+        ("Object", "keyframes", "bpy_struct.keyframe_insert"),  # of all
     ],
 )
 def test_the_search_finds_what_a_class_calls_otherwise(
