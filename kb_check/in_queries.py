@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 _MOST = 4
 _LONGEST = 100  # characters of a line that is shown
 _SPAN = re.compile(r"`([^`\n]+)`")
+_FAILED = re.compile(r"^\s*File .+, line \d+.*\n\s+(.+)$", re.MULTILINE)
 _FENCED = re.compile(r"^```\w*\n(.*?)^```", re.DOTALL | re.MULTILINE)
 _IMPORTED = ("mathutils", "mathutils.bvhtree", "mathutils.kdtree")  # whose classes scripts import by name
 _OF_DATA = (TYPES, "mathutils.")
@@ -84,8 +85,12 @@ def notes_on_code(reader: BaseReader, query: str) -> tuple[str, ...]:
 
 
 def _code_in(query: str) -> tuple[str, ast.Module] | None:
-    """The code in a query: in a fence or between backticks, else all of it, or what a line of words introduces."""
-    if fenced := _FENCED.findall(f"{query}\n"):
+    """The code in a query: the line of a traceback that failed, what is in a fence or between backticks, else all of
+    it, or what a line of words introduces.
+    """
+    if failed := _FAILED.findall(query):
+        texts = [failed[-1]]
+    elif fenced := _FENCED.findall(f"{query}\n"):
         texts = ["".join(fenced)]
     elif spans := _SPAN.findall(query):
         texts = ["\n".join(spans)]

@@ -28,8 +28,9 @@ class Advice(NamedTuple):
     ``chapters_of``) stand in one folder with those.
 
     A question that does not name the symbol must have a word of ``about``, if there are any, and every question one of
-    ``asked``. It is told of any symbol where the question has a word of each of ``wherever``; and only where the base
-    has the symbol that it ``needs``, but not of that.
+    ``asked``. It is told of any symbol where the question has a word of each of ``wherever``, and none of ``unless``;
+    and only where the base has the symbol that it ``needs``, but not of that, and is of a Blender from ``since`` on
+    that comes ``before`` another.
     """
 
     text: str
@@ -40,7 +41,10 @@ class Advice(NamedTuple):
     about: frozenset[str] = frozenset()
     asked: frozenset[str] = frozenset()
     wherever: tuple[frozenset[str], ...] = ()
+    unless: frozenset[str] = frozenset()
     needs: str = ""
+    since: tuple[int, int] = (0, 0)
+    before: tuple[int, int] = (99, 0)
 
 
 def _of(*names: str) -> frozenset[str]:
@@ -89,6 +93,24 @@ _FILMED = (
     "A film: `scene.render.image_settings.media_type = 'VIDEO'` comes first, then "
     "`scene.render.ffmpeg.format = 'MPEG4'`, `scene.render.ffmpeg.codec = 'H264'`. With images as the medium, 'FFMPEG' "
     "is no value of `file_format`."
+)
+_COMPOSITOR = f"{TYPES}Scene.compositing_node_group"
+_COMPOSED = (
+    'A scene\'s compositor is a node group: `tree = bpy.data.node_groups.new("Compositor", "CompositorNodeTree")`, '
+    "`scene.compositing_node_group = tree`. What a NodeGroupOutput in it gets is the picture, once "
+    "`tree.interface.new_socket(\"Image\", in_out='OUTPUT', socket_type='NodeSocketColor')` has made its input."
+)
+_COMPOSED_IN_SCENE = (
+    "`scene.use_nodes = True` makes the tree of a scene's compositor, `scene.node_tree`, with a Render Layers and a "
+    "Composite node."
+)
+_SHADED = (
+    "In a viewport it is `area.spaces.active.shading`, of an area whose `type` is 'VIEW_3D' "
+    "(`bpy.context.window_manager.windows[0].screen.areas`); `scene.display.shading` is that of Workbench's renders."
+)
+_OF_FORMER_PENCIL = (
+    "A Grease Pencil object takes `obj.grease_pencil_modifiers.new(\"Noise\", 'GP_NOISE')` in Blender 4.2: "
+    "`obj.modifiers.new` returns None for it."
 )
 _OF_SOCKET = (
     "An input of a node is animated by itself: "
@@ -153,12 +175,12 @@ _NO_TIMERS = (
     "Timers run between the events of a Blender with a window. Without one (`--background`, or `import bpy` in another "
     "Python) none ever runs: call the function yourself there."
 )
-_WANTS_MATERIAL = "'MATERIAL' crashes Blender 5.1 as long as the object has no material: give it one before."
+_WANTS_MATERIAL = "'MATERIAL' crashes Blender as long as the object has no material: give it one before."
 _NO_SIZES = "An empty list crashes Blender: `if sizes: data.add_{}(sizes)`. Each size is at least 1."
 _NO_RETIMING = (
     "Assigning a key's `timeline_frame` may crash Blender: 5.1 where the scene has an earlier strip without such keys, "
-    "4.5 always. Make keys where they shall be, `strip.retiming_keys.add(timeline_frame=20)`; "
-    "`strip.retiming_keys.reset()` removes all."
+    "4.5 always. Make keys where they shall be, `strip.retiming_keys.add(timeline_frame=20)`, which itself crashes "
+    "Blender before 5.1; `strip.retiming_keys.reset()` removes all."
 )
 _NO_KEY = (
     "It makes no key, and returns None, at a frame outside the strip, as the default is for most, and on a strip that "
@@ -174,7 +196,7 @@ _BAKED = (
 )
 _BAKED_BY = (
     "`scene.cycles.bake_type` is what the button of the window bakes; `bpy.ops.object.bake` does not read it. Write "
-    "`bpy.ops.object.bake(type='AO')`: without `type` it bakes 'COMBINED'."
+    "the type there, `bpy.ops.object.bake(type='NORMAL')`: without it 'COMBINED' is baked."
 )
 _ALL = "`{}(indices=[])` {}, as if it were left out: call it only `if indices:`."
 _COMPRESSED = (
@@ -196,8 +218,9 @@ _UNRENDERED = (
 )
 _REFUSED_CLASS = (
     "Any other class than a subclass of one of Blender's raises `RuntimeError` (`missing bl_rna attribute`), not "
-    "`ValueError`; a class of Python's own (`int`) crashes Blender."
+    "`ValueError`."
 )
+_CRASHING_CLASS = "A class of Python's own (`int`) crashes Blender."
 _SIGNED = (
     "The scale is negative on all axes where the matrix mirrors (`matrix.is_negative`), whichever axis it mirrors: "
     "`Matrix.Diagonal((-1, 2, 3, 1))` gives (-1, -2, -3)."
@@ -229,6 +252,7 @@ ADVICE: tuple[Advice, ...] = (
     ),
     Advice(PLAIN_FUNCTION, frozenset({"bpy.msgbus.subscribe_rna"})),
     Advice(_REFUSED_CLASS, frozenset({"bpy.utils.register_class"})),
+    Advice(_CRASHING_CLASS, frozenset({"bpy.utils.register_class"}), since=(5, 1)),
     Advice(_SIGNED, frozenset({"mathutils.Matrix.to_scale", "mathutils.Matrix.decompose"})),
     Advice(_FACES, frozenset({"bpy_extras.bmesh_utils.bmesh_linked_uv_islands"})),
     Advice(_NO_KEY, _of("RetimingKeys.add")),
@@ -270,7 +294,29 @@ ADVICE: tuple[Advice, ...] = (
             _stems("ffmpeg film h264 movie mp4 mpeg4"),
             _stems("animation export output render save set"),
         ),
+        unless=_stems("transparent transparency"),
         needs=f"{TYPES}ImageFormatSettings.media_type",
+    ),
+    *(
+        Advice(
+            text,
+            wherever=(
+                _stems("compositing compositor"),
+                _stems("build create enable python script set setup"),
+            ),
+            needs=needs,
+        )
+        for text, needs in ((_COMPOSED, _COMPOSITOR), (_COMPOSED_IN_SCENE, f"{TYPES}Scene.node_tree"))
+    ),
+    Advice(
+        _SHADED,
+        beginning=(f"{TYPES}View3DShading",),
+        asked=_stems("material rendered solid viewport wireframe"),
+    ),
+    Advice(
+        _OF_FORMER_PENCIL,
+        wherever=(_stems("gpencil pencil"), _stems("modifier modifiers")),
+        before=(4, 3),
     ),
     Advice(
         _OF_SOCKET,
@@ -376,6 +422,7 @@ ADVICE: tuple[Advice, ...] = (
             f"{_STYLE}{name}" for name in ("", ".fill_color", ".fill_style", ".is_fill_visible", ".show_fill")
         },
         explained=_STYLE,
+        since=(5, 0),
     ),
     Advice(_EVERY_POINT, frozenset(f"{_STROKE}Point{name}" for name in ("", ".opacity", ".radius"))),
     Advice(_WANTS_MATERIAL, _of("GreasePencilOffsetModifier.offset_mode")),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import stem, words
 from kb_serve.answer.advice import ADVICE
 from kb_serve.recognise.resolving.subscripts import NODES_MODIFIER, CustomProperties
+from simworlds.releases import version_key
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,7 +32,7 @@ class Practice:
         ``is_named``: the question has its name, and was not only found to be like it.
         """
         said = frozenset(map(stem, words(question)))
-        for advice in ADVICE:
+        for advice in self._of_version:
             is_about = is_named or not advice.about or not advice.about.isdisjoint(said)
             is_asked = not advice.asked or not advice.asked.isdisjoint(said)
             if (self._is_on(advice, identifier) and is_about and is_asked) or self._is_told_anyway(
@@ -57,7 +58,13 @@ class Practice:
     def _is_told_anyway(self, advice: Advice, said: frozenset[str]) -> bool:
         """Whether a question has a word of each group by which advice is told of any symbol."""
         is_asked = bool(advice.wherever) and not any(group.isdisjoint(said) for group in advice.wherever)
+        is_asked = is_asked and advice.unless.isdisjoint(said)
         return is_asked and (not advice.needs or self._reader.entry(advice.needs) is not None)
+
+    @cached_property
+    def _of_version(self) -> tuple[Advice, ...]:
+        version = version_key(self._reader.meta.get("minor", ""))
+        return tuple(advice for advice in ADVICE if advice.since <= version < advice.before)
 
     @cached_property
     def _pages(self) -> dict[str, frozenset[str]]:

@@ -30,7 +30,7 @@ _OTHER_KIND = 0.6  # what a function counts that is assigned to, or a property t
 _UNCALLED = 0.85  # … and a function of which nothing is known but its name
 _SHARED = 0.5  # what it adds that a member has the words of a name
 _LABEL_ENDS = 0.5  # … of which so much if only its label ends with one of them
-_OF_ALL = 1 / 3  # the share of these words from which on what everything has is meant
+_OF_ALL = 1 / 2  # the share of these words from which on what everything has is meant
 _FUNCTIONS = frozenset({"function", "operator"})
 
 

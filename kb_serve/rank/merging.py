@@ -171,7 +171,9 @@ class QueryRanker:
         meant = self._meant(missing, recognition)
         # The class itself, and what else has that name.
         others = [
-            match.sure for match in recognition.matches if match.id == missing.owner or match.why == "name"
+            match.sure
+            for match in recognition.matches
+            if match.id == missing.owner or match.why in {"enum item", "name"}
         ]
         sure = max([_MEANT, *(one + (_BEFORE if meant.clear else -_BEFORE) for one in others)])
         if missing is recognition.doubted:

@@ -54,6 +54,26 @@ def test_what_blender_refuses_of_code_is_told(query: str, told: str, kb: Knowled
     assert answer.text.startswith(f"> {answer.notes[0]}")
 
 
+@pytest.mark.parametrize(
+    ("line", "message", "told"),
+    [
+        ("obj.scale = 2", "TypeError: sequence expected at dimension 1, not 'int'", "takes 3 floats"),
+        (
+            "vg.add(0, 1.0, 'REPLACE')",
+            "TypeError: VertexGroup.add(): sequence expected",
+            "a sequence of ints",
+        ),
+    ],
+)
+def test_the_line_that_failed_is_taken_from_a_traceback(
+    line: str, message: str, told: str, kb: KnowledgeBase
+) -> None:
+    frames = f'  File "/a.py", line 3, in <module>\n    f(1)\n  File "/a b.py", line 7, in f\n    {line}\n    ^^^^^'
+    notes = kb.query(f"Traceback (most recent call last):\n{frames}\n{message}").notes
+    assert notes[0].startswith(f"`{line}`: ")
+    assert told in notes[0]
+
+
 def test_a_sure_fix_is_written_out(kb: KnowledgeBase) -> None:
     (note,) = notes_on_code(kb.reader, "mat.diffuse_color = (1, 0, 0)")
     assert note.endswith("Write `mat.diffuse_color = (1, 0, 0, 1.0)`.")

@@ -6,11 +6,13 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.flags import operator_also, operator_areas, operator_given, refused_nothing
 from kb_build.symbols.lines import TRIED, operator_needs
 from kb_build.symbols.records import REFUSED_ALL
 from kb_serve.recognise.resolving.call_texts import arguments
 from kb_serve.recognise.resolving.chains import find_chains
+from kb_serve.recognise.resolving.variables import usual_classes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,6 +27,8 @@ NO_OVERRIDE = (
     f"set it with `{OVERRIDE}`."
 )
 _WITH = "with bpy.context.temp_override"
+_FOR_OBJECT = "active_object={0}, object={0}, selected_objects=[{0}], selected_editable_objects=[{0}]"
+_TAKEN = re.compile(r"objects\[[^\]]+\]$|\.(?:active_)?object$")
 _ACTIVE = "bpy.context.view_layer.objects.active = ob"
 _SELECTED = "ob.select_set(True)"
 _OF_AREA = re.compile(r"\barea\.")  # a statement on the area
@@ -138,10 +142,19 @@ def with_context(chain: Chain) -> str:
     return f"{_WITH}({_override(first)}): {chain.dotted}({given})"
 
 
+def _is_object(first: ast.expr, given: str) -> bool:
+    """Whether an argument is an object, by the name of its variable or where it is taken from."""
+    named = isinstance(first, ast.Name) and OBJECT in usual_classes(first.id)
+    return named or _TAKEN.search(given) is not None
+
+
 def _override(first: ast.expr) -> str:
-    """The arguments of ``temp_override`` that say the same as a dictionary."""
+    """The arguments of ``temp_override`` that say the same as a dictionary, or give an operator the object that it was
+    called with: ``**obj`` would be its custom properties.
+    """
     if not isinstance(first, ast.Dict):
-        return f"**{ast.unparse(first)}"
+        given = ast.unparse(first)
+        return _FOR_OBJECT.format(given) if _is_object(first, given) else f"**{given}"
     named = [
         f"{key.value}={ast.unparse(value)}"
         for key, value in zip(first.keys, first.values, strict=True)

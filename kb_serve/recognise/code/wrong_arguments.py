@@ -118,7 +118,9 @@ def counted(places: int) -> str:
 
 
 def _gives_context(arguments: str, parameters: Collection[str]) -> bool:
-    """Whether the first argument is a dictionary, or a variable that is not just the name of a parameter."""
+    """Whether the first argument is a dictionary, or what is read from a variable that is not just the name of a
+    parameter.
+    """
     first = arguments.strip()
-    variable = re.match(r"([a-z_]\w*)(?:\.\w+)*(?:\.copy\(\))?\s*(?:,|$)", first)
+    variable = re.match(r"([a-z_]\w*)(?:\.\w+|\[[^\]]*\])*(?:\.copy\(\))?\s*(?:,|$)", first)
     return bool(re.match(r"\{|dict\(", first)) or (variable is not None and variable[1] not in parameters)

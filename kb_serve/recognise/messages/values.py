@@ -123,9 +123,10 @@ class Values:
         return owners if len(owners) < _FEW and all("(" not in owner for owner in owners) else []
 
     def _taking_beside(self, owners: Sequence[str], value: str) -> list[str]:
-        """The properties that take a value, of the class of the likeliest owner."""
+        """The further properties that take a value, of the class of the likeliest owner."""
         cls = owners[0].rpartition(".")[0] if owners and "(" not in owners[0] else ""
-        return [owner for owner in self._taking(value) if owner.rpartition(".")[0] == cls] if cls else []
+        taking = self._taking(value) if cls else []
+        return [owner for owner in taking if owner.rpartition(".")[0] == cls and owner not in owners]
 
     def _taking(self, value: str) -> list[str]:
         """All that takes exactly a value."""

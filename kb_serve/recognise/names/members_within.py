@@ -141,7 +141,9 @@ def _beside(owner: str, name: str, reader: BaseReader) -> Within | None:
         if (key(one.name) == key(cls) or is_alone) and (member := _own_of(one.owner, name, reader)):
             holder = one.owner.removeprefix(TYPES)
             return Within(member, f"`{holder}` has it (`{member.path}`): this is its `.{one.name}`.")
-    for part in reader.members(holding[0].owner).values() if is_alone else ():
+    # What a whole data-block has beside it is another thing: an object's force field, for its rigid body.
+    is_part_too = is_alone and not reader.descends(holding[0].owner, ID)
+    for part in reader.members(holding[0].owner).values() if is_part_too else ():
         is_part = part.type == "pointer" and part.is_read_only and part.target not in {cls, *_OF_OTHER_USE}
         if is_part and (member := _own_of(f"{TYPES}{part.target}", name, reader)) and member.owner != ID:
             beside = f"`.{part.name}`, which stands beside this `.{holding[0].name}`"

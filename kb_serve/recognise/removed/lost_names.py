@@ -11,6 +11,7 @@ from kb_build.index.analysis import words
 from kb_build.symbols.api_names import OBJECT, SIDES, TYPES
 from kb_build.symbols.paths import socket_node
 from kb_serve.recognise.code.refusals import refuses
+from kb_serve.recognise.names.members_within import members_within
 from kb_serve.recognise.resolving.chain_starts import ROOTS
 from kb_serve.recognise.resolving.chains import ChainStep
 from kb_serve.recognise.resolving.variables import classes_of_parts, usual_classes
@@ -38,6 +39,12 @@ class LostName(NamedTuple):
 
     removed: RemovedSymbol
     steps: int
+
+
+def _is_made(chain: Chain, node: str) -> bool:
+    """Whether a call in a chain says which node it makes."""
+    name = node.removeprefix(TYPES)
+    return bool(name) and any(step.kind == "call" and name in step.text for step in chain.steps)
 
 
 class LostNames:
@@ -86,11 +93,14 @@ class LostNames:
     ) -> bool:
         """Whether a node has a socket today that the chain tells, or that may well be meant."""
         best = readings[0] if readings and readings[0].complete else None
-        if best and socket_node(best.symbols[-1]) in best.symbols:
+        node = socket_node(best.symbols[-1]) if best else ""
+        if best and (node in best.symbols or _is_made(chain, node)):
             return True
         sockets = [
             entry for entry in self._reader.by_name(name) if entry.path.startswith(f"{entry.owner}.{side}[")
         ]
+        if sockets and not removed.gone:
+            return True  # what another node got later is hardly meant
         symbols = [symbol for entry in sockets if (symbol := self._reader.symbol(entry.path))]
         if any(item.identifier in chain.values for symbol in symbols for item in symbol.enum_items):
             return True
@@ -98,7 +108,7 @@ class LostNames:
         lost = socket_node(removed.path)
         weights = self._reader.weights([*nodes, lost])
         most = max((weights.get(node, 0.0) for node in nodes), default=0.0)
-        return bool(nodes) and weights.get(lost, 0.0) < _FAR_LIKELIER * most
+        return bool(nodes) and not weights.get(lost, 0.0) > _FAR_LIKELIER * most
 
     def reached(self, chain: Chain, readings: Sequence[ResolvedChain]) -> LostName | None:
         """What the class lost that a chain leads to, whatever its variable is: ``x.animation_data.action.fcurves``."""
@@ -117,6 +127,8 @@ class LostNames:
             return removed
         if "[" in reading.missing or not is_telling(reading.missing):
             return None
+        if members_within(reading.owner, reading.missing, self._reader):
+            return None  # what has it today is meant
         paths = self._removed.paths_below(reading.owner, reading.missing)
         if reading.symbols[-1] == _DATA:
             paths = [path for path in paths if self._reader.is_object_data(_owner_of(path))]
@@ -135,7 +147,13 @@ class LostNames:
             return None
         least = max(today, default=0.0)
         is_far_likelier = lost >= _USED and lost > _FAR_LIKELIER * least
-        return LostName(removed, 1) if is_far_likelier or not today else None
+        return LostName(removed, 1) if is_far_likelier or (not today and self._took(removed, chain)) else None
+
+    def _took(self, removed: RemovedSymbol, chain: Chain) -> bool:
+        """Whether what was lost may have taken what a chain is set to: of a text it must be known."""
+        return not chain.values or any(
+            self._removed.of_path(f"{removed.path}:{value}") for value in chain.values
+        )
 
     def alike(self, chain: Chain, readings: Sequence[ResolvedChain]) -> RemovedSymbol | None:
         """What may be meant as well as what has the name today: of a class that counts more, or of another one that the
@@ -175,6 +193,8 @@ class LostNames:
         first = chain.steps[0] if chain.steps else None
         if not whole or first is None or first.kind != "attr" or self._is_known(chain, whole[0]):
             return None
+        if first.text in SIDES and [step.kind for step in chain.steps[1:2]] == ["key"]:
+            return None  # a socket's
         path = self._likeliest(self._removed.paths_named(first.text), _owner_of)
         removed = self._removed.of_path(path) if path else None
         # What has it today may have taken its place.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
 from kb_build.symbols.api_names import OPERATORS, SIDES, TYPES, interface_part
-from kb_build.symbols.paths import is_socket, socket_node, split_path
+from kb_build.symbols.paths import is_socket, last_name, socket_node, split_path
 from kb_serve.recognise.removed.lost_names import LostName, LostNames, is_telling
 from kb_serve.recognise.resolving.call_texts import arguments, texts_in
 from kb_serve.recognise.resolving.chain_starts import ROOTS
@@ -250,6 +250,7 @@ class OldCode:
             attribute is None
             or short
             or self._reader.entry(TYPES + chain.root)  # a class is named, and no variable after one
+            or any(key(last_name(cls)) == key(chain.root) for cls in usual_classes(chain.root))
             or any(reading.complete and reading.fit >= _LIKELY_FIT for reading in readings)
         ):
             return None

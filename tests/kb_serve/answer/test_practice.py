@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import math
+import re
 import subprocess
 import sys
 import warnings
@@ -27,6 +28,7 @@ bmesh_utils: Any = pytest.importorskip("bpy_extras.bmesh_utils")
 mathutils: Any = pytest.importorskip("mathutils")
 pytestmark = pytest.mark.blender
 TYPES = "bpy.types."
+PENCIL = "a noise modifier of a grease pencil object"
 POINT = "_bpy_internal.grease_pencil.stroke.GreasePencilStrokePoint"
 
 
@@ -178,7 +180,7 @@ def baked(kind: str, **given: str) -> list[float]:
 
 def test_the_operator_bakes_what_its_argument_says(reader: BaseReader) -> None:
     (note,) = Practice(reader).of("bpy.types.CyclesRenderSettings.bake_type", "")
-    assert "type='AO'" in note
+    assert "type='NORMAL'" in note
     assert baked("AO") == baked("NORMAL") == baked("AO", type="COMBINED")
     assert baked("NORMAL", type="AO") != baked("NORMAL")
 
@@ -778,3 +780,46 @@ def test_a_module_that_was_not_imported_is_to_be_imported(kb: KnowledgeBase) -> 
     answer = kb.query(f"AttributeError: {message}")
     assert answer.hits[0].id == "bpy.utils.previews"
     assert answer.notes[0].endswith("to be imported first: `import bpy.utils.previews`.")
+
+
+# What is set up otherwise in other versions
+
+
+def test_a_scene_composes_by_a_group_whose_output_is_the_picture(kb: KnowledgeBase) -> None:
+    note = "\n".join(kb.query("how to set up the compositor in python").notes)
+    scene = bpy.context.scene
+    codes = re.findall(r"`([^`]+)`", note)
+    names = {"bpy": bpy, "scene": scene}
+    for code in codes[:2]:
+        exec(code, names)
+    output = names["tree"].nodes.new("NodeGroupOutput")
+    exec(codes[2], names)
+    assert output.inputs[0].name == "Image"
+    assert scene.compositing_node_group == names["tree"]
+
+
+def test_the_shading_of_a_viewport_is_its_spaces(kb: KnowledgeBase) -> None:
+    bpy.ops.wm.read_factory_settings()
+    assert "area.spaces.active.shading" in "\n".join(kb.query("set viewport shading to rendered").notes)
+    areas = bpy.context.window_manager.windows[0].screen.areas
+    shading = next(area for area in areas if area.type == "VIEW_3D").spaces.active.shading
+    bpy.context.scene.display.shading.type = "WIREFRAME"
+    assert shading.type != "WIREFRAME"
+    shading.type = "RENDERED"
+    assert shading.type == "RENDERED"
+
+
+def test_a_transparent_film_is_no_movie(kb: KnowledgeBase) -> None:
+    assert "A film:" in "\n".join(kb.query("render a film to mp4").notes)
+    assert "A film:" not in "\n".join(kb.query("render with transparent film and save a png").notes)
+
+
+def test_advice_of_other_versions_is_not_given(reader: BaseReader, monkeypatch: pytest.MonkeyPatch) -> None:
+    def told(minor: str) -> str:
+        monkeypatch.setitem(reader.meta, "minor", minor)
+        return said(reader, "bpy.utils.register_class") + said(reader, f"{TYPES}ObjectModifiers.new", PENCIL)
+
+    assert "crashes Blender" in told("5.1")
+    assert "crashes Blender" not in told("5.0")
+    assert "GP_NOISE" in told("4.2")
+    assert "GP_NOISE" not in told("4.3")

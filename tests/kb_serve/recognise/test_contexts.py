@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import pytest
@@ -110,3 +111,16 @@ def test_a_context_as_an_argument_becomes_a_with_line(kb: KnowledgeBase, old: st
 
 def test_a_parameters_name_is_no_context(kb: KnowledgeBase) -> None:
     assert "Write `" not in kb.query("bpy.ops.mesh.primitive_cube_add(size, location)").text
+
+
+@pytest.mark.blender
+@pytest.mark.parametrize("given", ["obj", "bpy.data.objects['Camera']"])
+def test_an_object_that_an_operator_is_called_with_is_what_it_works_on(kb: KnowledgeBase, given: str) -> None:
+    bpy = pytest.importorskip("bpy")
+    bpy.ops.wm.read_factory_settings()
+    note = "\n".join(kb.query(f"bpy.ops.object.delete({given})").notes)
+    written = re.search(r"Write `(with .+?)`", note)
+    assert written is not None
+    exec(written[1], {"bpy": bpy, "obj": bpy.data.objects["Camera"]})
+    assert sorted(obj.name for obj in bpy.data.objects) == ["Cube", "Light"]
+    bpy.ops.wm.read_factory_settings(use_empty=True)

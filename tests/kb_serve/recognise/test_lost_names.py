@@ -5,9 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
+from asking import paths
+
+from kb_build.symbols.paths import last_name
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
+    from kb_serve.reader import BaseReader
 
 T = "bpy.types."
 
@@ -114,3 +118,30 @@ def test_every_thing_of_a_name_being_of_one_class_it_is_said_to_lack_a_member(kb
 def test_one_of_the_closest_begins_alike(kb: KnowledgeBase) -> None:
     message = "AttributeError: 'FieldSettings' object has no attribute 'falloff_angle'"
     assert f"`{T}FieldSettings.falloff_type`" in kb.query(message).notes[0].partition("Closest: ")[2]
+
+
+@pytest.mark.parametrize(
+    "code", ["n.{}.default_value = {}", 'n = ng.nodes.new("{2}")\nn.{0}.default_value = {1}']
+)
+def test_right_lines_that_set_inputs_of_nodes_are_not_denied(
+    kb: KnowledgeBase, reader: BaseReader, code: str
+) -> None:
+    denied: list[str] = []
+    for path in paths(reader, "socket", 150):
+        socket = reader.symbol(path)
+        assert socket is not None
+        if "inputs[" not in path or not isinstance(socket.default, int | float):
+            continue
+        line = code.format(path.removeprefix(f"{socket.owner}."), socket.default, last_name(socket.owner))
+        denied += [line for note in kb.query(line).notes if "does not exist" in note or "has no `" in note]
+    assert denied == []
+
+
+def test_what_a_part_has_today_is_not_told_as_lost_with_a_class(kb: KnowledgeBase) -> None:
+    answer = kb.query("scene.resolution_x = 100")
+    assert answer.hits[0].id == f"{T}RenderSettings.resolution_x"
+    assert "removed" not in "\n".join(answer.notes)
+
+
+def test_a_text_that_what_was_lost_never_took_tells_nothing_of_it(kb: KnowledgeBase) -> None:
+    assert "does not exist" not in "\n".join(kb.query("x.operation = 'MUL'").notes)

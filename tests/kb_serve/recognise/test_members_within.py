@@ -50,6 +50,8 @@ def test_the_very_name_is_found_one_step_on(kb: KnowledgeBase, owner: str, name:
         ("ShaderNodeTexImage", "reload"),
         ("EffectorWeights", "strength"),
         ("Scene", "lens"),
+        ("RigidBodyObject", "damping"),  # of the object's collision, which is another thing
+        ("SceneEEVEE", "samples"),
         ("Object", "empty_display_sizes"),
         ("Collection", "select_set"),
     ],
