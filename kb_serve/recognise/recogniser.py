@@ -140,7 +140,7 @@ class Recogniser:
             self._values_of_nothing(query, recognition)
         self._messages.explain(query, recognition)
         old = next((match.id for match in recognition.matches if match.sure >= _SURE), "")
-        if name := name_on_an_old_node(old):
+        if (name := name_on_an_old_node(old)) and last_name(socket_node(old)) not in query:
             tell_of_the_newer_node(name, self._reader, recognition)
         tell_of_the_newer_mix(old, self._reader, recognition)
         self._explain_removed(recognition, is_refused_value=BAD_ENUM.search(query) is not None)

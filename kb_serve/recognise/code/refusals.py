@@ -22,6 +22,11 @@ _NO_NUMBERS = _TEXTS | {"pointer", "collection"}
 _SET = ("property", "socket")
 
 
+def lists_value(symbol: Symbol, chain: Chain) -> bool:
+    """Whether a symbol lists the very text that a chain is set to."""
+    return any(item.identifier in chain.values for item in symbol.enum_items)
+
+
 def refuses(symbol: Symbol, chain: Chain) -> bool:
     """Whether a property or socket can certainly not be set to what a chain is: a truth value to 256, an enumeration
     to another text.

@@ -45,6 +45,9 @@ class FormerSockets:
             return True
         lost = [path for path in paths if path not in taken]
         fit = {path: len(around & set(terms(socket_node(path).removeprefix(TYPES)))) for path in paths}
+        # What a node got later is meant of that node alone.
+        paths = [path for path in paths if fit[path] or self._is_gone(path)]
+        lost = [path for path in lost if path in paths]
         if not any(fit.values()):
             said = len(recognition.notes)
             paths = self._lost_by_nobody_else(name, paths, recognition)
@@ -106,6 +109,10 @@ class FormerSockets:
         )
         for node in lacking[:1]:
             recognition.add(having[node], 0.9, "error message")
+
+    def _is_gone(self, path: str) -> bool:
+        removed = self._removed.of_path(path)
+        return removed is not None and bool(removed.gone)
 
     def _lost_by_nobody_else(self, name: str, paths: Sequence[str], recognition: Recognition) -> list[str]:
         """Of the sockets of a name that nodes lost, where no node is named: that of the node which scripts use most,

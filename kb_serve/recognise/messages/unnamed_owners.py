@@ -31,7 +31,7 @@ class UnnamedOwners:
             path for path in self._removed.paths_named(name) if path.rpartition(".")[0] in self._collections
         ]
         removed = self._removed.of_path(lost[0]) if len(lost) == 1 else None
-        if removed:
+        if removed and removed.gone:
             recognition.add_removed(removed)
         else:
             recognition.add(COLLECTION, 0.6, "error message")

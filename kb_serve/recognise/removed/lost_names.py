@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.index.analysis import words
 from kb_build.symbols.api_names import OBJECT, SIDES, TYPES
 from kb_build.symbols.paths import socket_node
-from kb_serve.recognise.code.refusals import refuses
+from kb_serve.recognise.code.refusals import lists_value, refuses
 from kb_serve.recognise.names.members_within import members_within
 from kb_serve.recognise.resolving.chain_starts import ROOTS
 from kb_serve.recognise.resolving.chains import ChainStep
@@ -218,7 +218,7 @@ class LostNames:
     def _lists(self, reading: ResolvedChain, chain: Chain) -> bool:
         """Whether what a reading leads to lists the very text that a chain is set to."""
         symbol = self._reader.symbol(reading.symbols[-1]) if chain.values else None
-        return symbol is not None and any(item.identifier in chain.values for item in symbol.enum_items)
+        return symbol is not None and lists_value(symbol, chain)
 
     def _likeliest(self, paths: Iterable[str], owner: Callable[[str], str]) -> str:
         """Of removed symbols that of the class of today that counts most; empty for none."""

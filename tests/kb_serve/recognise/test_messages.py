@@ -904,3 +904,17 @@ def test_a_keyword_that_many_take_is_offered_by_those_that_scripts_use_most(kb: 
         'TypeError: Converting py args to operator properties:: keyword "name" unrecognized'
     ).notes
     assert not any("new in" in note for note in notes)
+
+
+def test_items_that_begin_like_modes_are_no_modes(kb: KnowledgeBase) -> None:
+    message = (
+        "TypeError: Converting py args to operator properties:  enum \"{}\" not found in ('OBJECT', '{}')"
+    )
+    assert "no such mode" in "\n".join(kb.query(message.format("POSE", "EDIT")).notes)
+    assert "no such mode" not in "\n".join(kb.query(message.format("BONES", "ARMATURE")).notes)
+
+
+def test_the_old_mix_is_no_newer_one_where_the_code_makes_it(kb: KnowledgeBase) -> None:
+    line = "mix.inputs['Color1'].default_value = (1, 0, 0, 1)"
+    assert "ShaderNodeMix`" in "\n".join(kb.query(line).notes)
+    assert kb.query(f"mix = nodes.new('ShaderNodeMixRGB')\n{line}").notes == ()

@@ -70,6 +70,7 @@ bpy.ops.wm.save_as_mainfile(filepath="none/x.blend")
 bpy.ops.wm.obj_import(filepath="/none.obj")
 bpy.ops.preferences.addon_enable(module="nothing")
 bpy.ops.object.mode_set(mode="POSE")
+bpy.ops.object.empty_add(); bpy.ops.object.mode_set(mode="EDIT")
 menu().default_value = "A"
 scene.tool_settings.snap_elements = "VERTEX"
 registered("Operator"); bpy.utils.register_class(made[-1])

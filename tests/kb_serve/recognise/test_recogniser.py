@@ -658,6 +658,7 @@ def test_a_value_of_what_a_variable_is_always_called_after_is_refused(kb: Knowle
     answer = kb.query("obj.type = 'BACK'")
     assert answer.hits[0].id == "bpy.types.Object.type"
     assert "is read-only" in answer.notes[0]
+    assert kb.query("con.type = 'HINGE'").hits[0].id == "bpy.types.RigidBodyConstraint.type"
 
 
 def test_a_part_of_a_macro_has_the_properties_of_its_operator(kb: KnowledgeBase) -> None:
