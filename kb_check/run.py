@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 MOST_ROUNDS = 5  # of fixes: one may make way for the next
 
-Progress = "Callable[[int, int], None]"
-
 
 @dataclass(slots=True)
 class Run:

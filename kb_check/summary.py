@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from kb_check.source import split_lines
 from kb_serve.answer.budget import clip, tokens
+from simworlds.counting import counted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -45,10 +46,10 @@ def mended(lines: Sequence[str], fix: Fix | None) -> str:
 def summarize(findings: Sequence[Finding], code: str, blender: str, max_tokens: int) -> str:
     """What was found in a script, checked for a Blender. What does not fit is counted at the end."""
     lines = split_lines(code)
-    size = _count(len(lines), "line")
+    size = counted(len(lines), "line")
     if not findings:
         return f"Nothing found: {size} checked for Blender {blender} (names, keywords, values, sockets)."
-    counts = (_count(sum(f.severity == kind for f in findings), kind) for kind in _ORDER)
+    counts = (counted(sum(f.severity == kind for f in findings), kind) for kind in _ORDER)
     parts = [f"{', '.join(count for count in counts if count[:2] != '0 ')} in {size}, for Blender {blender}."]
     groups = _grouped(findings)
     room = max_tokens - tokens(parts[0])
@@ -90,7 +91,3 @@ def _group_text(group: Sequence[Finding], lines: Sequence[str]) -> str:
 
 def _as_code(text: str) -> str:
     return f"`{text}`" if "\n" not in text and "`" not in text else f"\n```python\n{text}\n```"
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number} {noun}{'s' if number != 1 else ''}"

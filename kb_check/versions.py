@@ -11,6 +11,7 @@ from kb_check.project import Project
 from kb_check.run import Run
 from kb_serve.locate import find_bases
 from kb_serve.reader import BaseReader
+from simworlds.counting import counted
 from simworlds.errors import UserError
 from simworlds.releases import minor_of, version_key
 
@@ -109,7 +110,7 @@ class VersionsReport:
             return f"Nothing found that breaks in {_listed(good)}."
         parts = [f"Nothing found that breaks in {_ranges(good, self.versions)}"] if good else []
         parts += [
-            f"breaks in {version}: {count} error{'' if count == 1 else 's'}, first at {self._first(version)}"
+            f"breaks in {version}: {counted(count, 'error')}, first at {self._first(version)}"
             for version, count in self.totals().items()
             if count
         ]
@@ -140,12 +141,12 @@ class VersionsReport:
             yield from map(self._line, self.breaks())
             yield ""
         if warnings := self.warnings():
-            yield f"{len(warnings):,} warning{'' if len(warnings) == 1 else 's'}:"
+            yield f"{counted(len(warnings), 'warning')}:"
             yield from map(self._line, warnings)
             yield ""
         clean = len(errors) - len(affected)
         if affected and clean:
-            yield f"{clean:,} more file{'' if clean == 1 else 's'} without errors."
+            yield f"{counted(clean, 'more file')} without errors."
         if verdict := self.verdict():
             yield verdict
 
@@ -182,7 +183,7 @@ def check_versions(  # noqa: PLR0913 - what is checked, and how
 ) -> VersionsReport:
     """Checks files for several Blenders, whose bases are in ``home``.
 
-    ``progress`` gets the number of files that are done and that there are, for each version anew. Raises UserError
+    ``progress`` gets the number of bytes that are done and that there are, for each version anew. Raises UserError
     for what is no version and where there is no base.
     """
     bases = base_files(versions, home)

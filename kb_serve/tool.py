@@ -127,6 +127,6 @@ def answer(service: Service, arguments: dict[str, Any] | None) -> CallToolResult
 
 
 def is_quick(arguments: dict[str, Any] | None) -> bool:
-    """Whether a call takes milliseconds: that depends on the length of the query, and on the base being open."""
+    """Whether a call takes milliseconds: its query is short, and it names no Blender, whose base may not be open."""
     given = arguments or {}
     return len(str(given.get("query", ""))) <= _QUICK_CHARACTERS and not given.get("blender")

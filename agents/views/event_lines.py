@@ -8,7 +8,6 @@ from agents.loop import events
 from agents.loop.run_state import ModelCall, ToolCall
 from agents.protocol.report.grouping import group_findings
 from agents.views.formatting import (
-    counted,
     describe_attempt,
     describe_film,
     describe_source,
@@ -18,6 +17,7 @@ from agents.views.formatting import (
 )
 from agents.views.now import Now
 from agents.views.time_left import describe_time_left
+from simworlds.counting import counted
 from simworlds.terminal.text import shortened
 
 if TYPE_CHECKING:

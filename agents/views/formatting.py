@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from simworlds.counting import counted
 from simworlds.terminal.text import plain
 
 if TYPE_CHECKING:
@@ -58,11 +59,6 @@ def format_cost(row: SpendingRow) -> str:
     if not row.calls and not row.unpriced and not row.cost:
         return "nothing"
     return format_money(row.cost) + (f" and {row.unpriced} of unknown price" if row.unpriced else "")
-
-
-def counted(number: int, words: str) -> str:
-    """``1 stage``, ``2 stages``."""
-    return f"{number:,} {words}{'s' * (number != 1)}"
 
 
 def swatch(linear: Sequence[float]) -> str:

@@ -19,7 +19,6 @@ from agents.plan.part import STAGES
 from agents.views.cost_table import KINDS, costs_by_role
 from agents.views.event_lines import format_findings
 from agents.views.formatting import (
-    counted,
     describe_attempt,
     describe_film,
     describe_source,
@@ -33,6 +32,7 @@ from agents.views.formatting import (
 )
 from agents.views.now import Now, ToolProgress
 from agents.views.time_left import describe_time_left
+from simworlds.counting import counted
 from simworlds.terminal.text import plain, shortened
 
 if TYPE_CHECKING:

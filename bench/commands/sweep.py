@@ -12,6 +12,7 @@ import click
 
 from bench.commands.shared_options import blender_options, combine, judge_cache, with_audit_options
 from bench.commands.system_options import system_of, with_system_options
+from simworlds.counting import counted
 from simworlds.terminal.finite_range import FiniteRange
 
 if TYPE_CHECKING:
@@ -203,7 +204,7 @@ def _conclude(summaries: Sequence[SweepSummary], out: Path) -> None:
     from bench.sweep.sweep_view import reason  # noqa: PLC0415 - not for --help
 
     for one in summaries:
-        click.echo(f"{_counted(one.asked, 'scene')}: {one.scored} scored, {one.judged} judged")
+        click.echo(f"{counted(one.asked, 'scene')}: {one.scored} scored, {one.judged} judged")
         for why, count in sorted(one.why_not_scored.items(), key=lambda item: -item[1]):
             click.echo(f"  {count} not scored: {reason(why)}")
         for why, count in sorted(one.why_not_judged.items(), key=lambda item: -item[1]):
@@ -213,7 +214,3 @@ def _conclude(summaries: Sequence[SweepSummary], out: Path) -> None:
         click.echo(f"  {scene} could not be done: {reason(why)}", err=True)
     click.echo(f"Tables and page: simworlds bench report {out}")
     sys.exit(1 if faults else 0)
-
-
-def _counted(count: int, word: str) -> str:
-    return f"{count} {word}{'' if count == 1 else 's'}"

@@ -6,6 +6,7 @@ import unicodedata
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from simworlds.counting import counted
 from simworlds.terminal.streams import STEERING
 
 if TYPE_CHECKING:
@@ -93,22 +94,18 @@ def _width(text: str) -> int:
 def _summary(report: Report) -> Iterator[Line]:
     if not report.files:
         return
-    checked = f"{_many(len(report.files), 'file')} checked for Blender {report.blender}"
+    checked = f"{counted(len(report.files), 'file')} checked for Blender {report.blender}"
     if report.fixed:
-        yield [(f"Mended: {_many(report.fixed, 'finding')}.", "")]
+        yield [(f"Mended: {counted(report.fixed, 'finding')}.", "")]
     severities = Counter(finding.severity for _, finding in report.findings)
     if not severities:
         yield [(f"{checked}: nothing found.", "green")]
         return
     affected = sum(bool(file.findings) for file in report.files)
-    kinds = ", ".join(_many(severities[kind], kind) for kind in _STYLES if severities[kind])
-    yield [(f"{checked}: {kinds} in {_many(affected, 'file')}.", "bold")]
+    kinds = ", ".join(counted(severities[kind], kind) for kind in _STYLES if severities[kind])
+    yield [(f"{checked}: {kinds} in {counted(affected, 'file')}.", "bold")]
     sure, unsure = report.fixable(unsafe=False), report.fixable(unsafe=True)
     if sure:
-        yield [(f"--fix mends {_many(sure, 'finding')}.", "")]
+        yield [(f"--fix mends {counted(sure, 'finding')}.", "")]
     if unsure:
-        yield [(f"--fix --unsafe-fixes mends {_many(unsure, 'finding')}{' more' if sure else ''}.", "")]
-
-
-def _many(count: int, noun: str) -> str:
-    return f"{count:,} {noun}{'' if count == 1 else 's'}"
+        yield [(f"--fix --unsafe-fixes mends {counted(unsure, 'finding')}{' more' if sure else ''}.", "")]

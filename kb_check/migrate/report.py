@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from kb_check.migrate.plan import FileMigration
 from kb_check.migrate.trial import Trial
+from simworlds.counting import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -103,16 +104,16 @@ def summary(migration: Migration) -> str:
     changed = sum(bool(file.changes) for file in files)
     kinds = Counter(decision.severity for file in files for decision in file.decisions)
     left = kinds["error"] + sum(len(file.kept) for file in files)
-    parts = [f"{_many(changes, 'change')} in {_many(changed, 'file')}"]
+    parts = [f"{counted(changes, 'change')} in {counted(changed, 'file')}"]
     if left:
-        parts.append(f"{_many(left, 'place')} to decide")
+        parts.append(f"{counted(left, 'place')} to decide")
     elif migration.is_done and not kinds["warning"]:
         parts.append("nothing is left to decide")
     if kinds["warning"]:
-        parts.append(f"{_many(kinds['warning'], 'warning')} to look at")
+        parts.append(f"{counted(kinds['warning'], 'warning')} to look at")
     if notebooks:
         parts.append(
-            f"{_many(len(notebooks), 'notebook')} left as {'it is' if len(notebooks) == 1 else 'they are'}"
+            f"{counted(len(notebooks), 'notebook')} left as {'it is' if len(notebooks) == 1 else 'they are'}"
         )
     if versions.without_base:
         names = ", ".join(versions.without_base)
@@ -176,10 +177,6 @@ def as_json(migration: Migration) -> dict[str, Any]:
             for trial in migration.trials
         ],
     }
-
-
-def _many(count: int, noun: str) -> str:
-    return f"{count:,} {noun}{'' if count == 1 else 's'}"
 
 
 def _plain(text: str) -> str:

@@ -28,6 +28,7 @@ from kb_check.findings import Edit, Finding, Fix
 from kb_check.own_classes import FunctionDefinition, own_classes
 from kb_check.registered_types import FEWEST_ARGUMENTS
 from kb_check.rule import Rule
+from simworlds.counting import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -80,7 +81,7 @@ def _judged(script: Script, own: OwnClass, function: FunctionDefinition, symbol:
     fewest = FEWEST_ARGUMENTS.get(symbol.path, len(names))
     if not fewest <= len(written) <= len(names):
         fix = _completed(script, function, names)
-        count = f"{len(written)} argument{'' if len(written) == 1 else 's'}"
+        count = counted(len(written), "argument")
         return _finding(script, own, function, f"takes {takes}, and this one has {count}", fix)
     return None
 

@@ -22,6 +22,7 @@ from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import last_name
 from kb_build.symbols.records import EMPTY
+from kb_check.documented import is_related
 from kb_check.edit_bones import edited_outside
 from kb_check.findings import Finding
 from kb_check.made_here import (
@@ -106,16 +107,12 @@ def _may_be_filled(script: Script, path: str) -> bool:
         not has_plain_operators_only(script)
         or symbol.name in _texts(script)
         or any(own & _stems(name) for name in _mentioned(script))
-        or any(_is_of(script, cls, symbol.owner) for cls in _worked_on(script))
+        or any(is_related(script, cls, symbol.owner) for cls in _worked_on(script))
     )
 
 
 def _stems(name: str) -> set[str]:
     return set(map(stem, words(name)))
-
-
-def _is_of(script: Script, cls: str, owner: str) -> bool:
-    return script.api.descends(cls, owner) or script.api.descends(owner, cls)
 
 
 @once_per_script

@@ -59,6 +59,7 @@ from kb_check.made_here import once_bound
 from kb_check.misfits import describe
 from kb_check.rule import Rule
 from kb_check.tried import is_tried
+from simworlds.counting import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -160,7 +161,7 @@ def _refused(function: ast.AST, counts: tuple[int, ...]) -> str:
     fewest = most - len(arguments.defaults)
     if any(fewest <= count and (count <= most or arguments.vararg) for count in counts):
         return ""
-    last = f"{counts[-1]} argument{'' if counts[-1] == 1 else 's'}" if counts[-1] else "no argument"
+    last = counted(counts[-1], "argument") if counts[-1] else "no argument"
     return f"{last}, or with one if it takes one" if counts == NUMBERS_OF_ARGUMENTS else last
 
 

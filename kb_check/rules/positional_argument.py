@@ -46,6 +46,7 @@ from kb_check.findings import Edit, Finding, Fix
 from kb_check.given import parameter_taker
 from kb_check.made_here import bindings
 from kb_check.rule import Rule
+from simworlds.counting import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -208,7 +209,7 @@ def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
     rest = [name for name in callee.keyword_only if name not in call.given]
     if not rest:
         count = len(callee.positional)
-        takes = "no arguments" if not callee.parameters else f"{count} argument{'s' * (count != 1)} by place"
+        takes = "no arguments" if not callee.parameters else f"{counted(count, 'argument')} by place"
         advice = " Its numbers are one sequence." if callee.symbol.kind == "class" else ""
         yield Finding(
             RULE.id, "error", script.span(extra),

@@ -54,7 +54,8 @@ def _check(script: Script) -> Iterator[Finding]:
         if _SEQUENCE in (left, right):
             advice = "Make a vector of the sequence: `mathutils.Vector(…)`."
         if isinstance(row.node, ast.AugAssign):
-            advice = f"In place the result must be of the same class.{' Write `a = b @ a`.' * is_other}"
+            advice = "In place the result must be of the same class."
+            advice += " Write `a = b @ a`." if is_other else ""
         fix = _fix(script, row.node) if is_other and isinstance(row.node, ast.BinOp) else None
         yield Finding(
             RULE.id, "error", script.span(row.node), f"`{left} {row.value} {right}` is refused. {advice}",

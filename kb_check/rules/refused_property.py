@@ -33,6 +33,7 @@ from kb_check.literals import functions, number, set_of, times_bound, written
 from kb_check.made_here import callee_path
 from kb_check.own_classes import plain_classes
 from kb_check.rule import Rule
+from simworlds.counting import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -142,7 +143,7 @@ class _Declaration:
                 continue
             count = len(arguments.posonlyargs) + len(arguments.args)
             if count != len(wants):
-                has = f"{count} argument{'' if count == 1 else 's'}"
+                has = counted(count, "argument")
                 yield self._finding(
                     node, name, f"is called with `({', '.join(wants)})`, and this function has {has}"
                 )

@@ -10,6 +10,7 @@ from kb_serve.answer.budget import AnswerBlock, clip, cut, names_of, shown, toke
 from kb_serve.answer.next_call import next_call
 from kb_serve.errors import BadQuery
 from kb_serve.recognise.code.wrong_values import NO_VALUE
+from simworlds.counting import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -77,7 +78,7 @@ def paged(query: str, draft: Draft, max_tokens: int, part: int, command: str) ->
     """As many parts of a draft as fit, from ``part`` on; what is left, and how to get it. Raises BadQuery."""
     parts = draft.parts
     if part > len(parts):
-        raise BadQuery(f"part={part} does not exist: this answer has {_counted(len(parts))}.")
+        raise BadQuery(f"part={part} does not exist: this answer has {counted(len(parts), 'part')}.")
     text, after = shown(parts, part - 1, max_tokens)
     if after == len(parts):
         return DocsAnswer(draft.kind, text, draft.hits, draft.notes, part, len(parts))
@@ -85,10 +86,6 @@ def paged(query: str, draft: Draft, max_tokens: int, part: int, command: str) ->
     call = next_call(query, after + 1, command)
     footer = _footer(call, range(part, after + 1), len(parts), names_of(parts[after:]))
     return DocsAnswer(draft.kind, f"{text}\n\n{footer}", draft.hits, draft.notes, part, len(parts), after + 1)
-
-
-def _counted(parts: int) -> str:
-    return f"{parts} parts" if parts > 1 else "1 part"
 
 
 def _footer(call: str, seen: range, parts: int, left: Sequence[str]) -> str:

@@ -44,7 +44,7 @@ def facts(symbol: Symbol) -> Iterator[str]:
     yield from _range_facts(symbol)
     if symbol.unit and symbol.type not in _NO_NUMBERS:
         yield f"unit: {UNITS.get(symbol.unit, symbol.unit.lower())}"
-    if symbol.subtype and symbol.subtype not in {"UNSIGNED"}:
+    if symbol.subtype and symbol.subtype != "UNSIGNED":
         yield f"subtype: {symbol.subtype}"
     if flags := [flag for flag in symbol.flags if flag in _SHOWN_FLAGS and not symbol.is_called_back]:
         yield ", ".join(flags)

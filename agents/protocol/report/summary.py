@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from agents.protocol.report.text_format import format_rule_ids, format_value
 from agents.protocol.rule import NO_PLAN, NO_ROLES
+from simworlds.counting import counted
 from simworlds.terminal.text import plain
 
 if TYPE_CHECKING:
@@ -60,9 +61,9 @@ def verdict(report: Report) -> str:
     hard, soft = counts["hard", "broken"], counts["soft", "broken"]
     undecided = sum(count for (_, outcome), count in counts.items() if outcome != "broken")
     words = [
-        f"{_count(hard, 'hard finding')} of {_count(len(broken), 'rule')}" if hard else "no hard finding"
+        f"{counted(hard, 'hard finding')} of {counted(len(broken), 'rule')}" if hard else "no hard finding"
     ]
-    words += [_count(soft, "soft finding")] * bool(soft)
+    words += [counted(soft, "soft finding")] * bool(soft)
     words += [f"{undecided} could not be decided"] * bool(undecided)
     state = "Not ok" if hard else "Ok" if report.decided else "Undecided"
     return f"{state}: {', '.join(words)}."
@@ -112,10 +113,6 @@ def _not_checked(reasons: dict[str, list[str]], order: list[str]) -> list[str]:
     parts = [f"{format_rule_ids(names, order)} ({plain(why)})" for why, names in told.items()]
     parts += [f"{format_rule_ids(idle, order)} (nothing to judge)"] if idle else []
     return [f"Not checked: {'; '.join(parts)}."] if parts else []
-
-
-def _count(number: int, noun: str) -> str:
-    return f"{number:,} {noun}{'s' * (number != 1)}"
 
 
 def fix_of(group: FindingGroup, scope: VerificationScope) -> str:

@@ -28,6 +28,7 @@ from agents.views.report.media import Media, MediaItem
 from agents.views.report.relation_graph import draw_graph
 from agents.views.report.tables import objects_of, relations_of
 from agents.views.report.timeline import draw_timeline
+from simworlds.counting import counted
 from simworlds.files import write_whole
 from simworlds.llm.spending import SpendingRow as Spent
 from simworlds.terminal.text import shortened
@@ -246,7 +247,7 @@ def _caption(call: ToolCall) -> str:
 def _about(call: ToolCall) -> str:
     """What a call is about: the length of its code, or its arguments as far as they are short."""
     if call.code:
-        return formatting.counted(len(call.code.splitlines()), "line")
+        return counted(len(call.code.splitlines()), "line")
     given = (
         ", ".join(map(str, value)) if isinstance(value, list) else str(value)
         for value in call.input.values()

@@ -109,7 +109,7 @@ def call_of(function: SymbolEntry) -> str:
 
 
 def _short(entry: SymbolEntry) -> str:
-    """A property with its default and its first values, without its type: ``quality` = 5``; of a pointer its target."""
+    """A property with its default and its first values, without its type (quality = 5); of a pointer its target."""
     if entry.type == "pointer":
         return f"`{entry.name}`{_NONE} ({entry.target})"
     name, _, rest = entry.head.partition(" ")

@@ -10,6 +10,7 @@ from kb_serve.recognise.code.contexts import NO_OVERRIDE, with_context
 from kb_serve.recognise.names.likely_keywords import likely_keywords
 from kb_serve.recognise.resolving.call_texts import arguments
 from kb_serve.signatures import signature_arguments
+from simworlds.counting import counted
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator
@@ -99,7 +100,7 @@ def _by_place(symbol: Symbol, text: str) -> Iterator[str]:
     if len(given) == len(by_place) + 1 and rest:
         yield f"`{symbol.path}` takes `{rest[0]}` by name only: `{rest[0]}={given[-1]}`."
     else:
-        yield f"`{symbol.path}` takes {counted(len(by_place))} by place: `{symbol.signature}`."
+        yield f"`{symbol.path}` takes {counted_arguments(len(by_place))} by place: `{symbol.signature}`."
 
 
 def places_of(symbol: Symbol) -> tuple[list[str], list[str]] | None:
@@ -112,9 +113,9 @@ def places_of(symbol: Symbol) -> tuple[list[str], list[str]] | None:
     return names, [argument.arg for argument in listed.kwonlyargs]
 
 
-def counted(places: int) -> str:
+def counted_arguments(places: int) -> str:
     """So many arguments, in words."""
-    return f"{places or 'no'} argument{'s' * (places != 1)}"
+    return counted(places, "argument") if places else "no arguments"
 
 
 def _gives_context(arguments: str, parameters: Collection[str]) -> bool:

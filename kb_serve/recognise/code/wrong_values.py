@@ -71,16 +71,16 @@ def _wrong(
         return
     taken = [item for item in items if item.identifier not in refused and item.is_taken]
     if closest := likely_items(value, taken, reader):
-        told = f"Closest: {_listed(closest)}."
+        of_name = {item.identifier: item for item in taken}
+        told = f"Closest: {', '.join(_quoted(of_name[name], by_setting=True) for name in closest)}."
     else:
         # What is taken somewhere only stands behind what is taken everywhere.
         taken.sort(key=lambda item: bool(item.where))
-        named = [
-            f"`'{item.identifier}'`{f' ({item.where.text})' if item.where else ''}" for item in taken[:_MOST]
-        ]
-        told = f"It takes {', '.join(named)}{' …' if len(taken) > _MOST else ''}."
+        told = f"It takes {', '.join(map(_quoted, taken[:_MOST]))}{' …' if len(taken) > _MOST else ''}."
     yield f"`'{value}'` is not a value of `{owner}`. {told}"
 
 
-def _listed(names: Sequence[str]) -> str:
-    return ", ".join(f"`'{name}'`" for name in names)
+def _quoted(item: EnumItem, *, by_setting: bool = False) -> str:
+    """An item with where it is taken; or only if that is ``by_setting``, which the code can make right."""
+    told = item.where is not None and (bool(item.where.settings) or not by_setting)
+    return f"`'{item.identifier}'`{f' ({item.where.text})' if item.where and told else ''}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.code.wrong_arguments import counted, places_of
+from kb_serve.recognise.code.wrong_arguments import counted_arguments, places_of
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
@@ -42,11 +42,11 @@ class ArgumentPlaces:
         is_sequence = "=(" in symbol.signature.partition(",")[0]
         places = places_of(symbol)
         if places and len(places[0]) < most:
-            told = f"takes {counted(len(places[0]))} by place: `{symbol.signature}`."
+            told = f"takes {counted_arguments(len(places[0]))} by place: `{symbol.signature}`."
         elif is_sequence:
             told = f"takes at most {most} by position, the first a sequence: `{symbol.name}((…, …))`."
         else:
-            told = f"takes {counted(most)}: `{symbol.signature}`."
+            told = f"takes {counted_arguments(most)}: `{symbol.signature}`."
         recognition.notes.append(f"`{symbol.path}` {told}")
 
     def _by_name(self, function: str, argument: str, recognition: Recognition) -> None:

@@ -115,8 +115,8 @@ class NoneBefore:
     def _empty_before(self, name: str) -> list[SymbolEntry]:
         """The likeliest pointers that are None on new things, and lead to what has a member of that name, once filled.
 
-        None where that leads to too many classes, and none to a class whose member scripts use far less than another's:
-        then they say nothing.
+        Empty where that leads to too many classes. Without those to a class whose member scripts use far less than
+        another's: then they say nothing.
         """
         members = {
             target: self._reader.member_of(TYPES + target, name) for target in self._that_may_have(name)

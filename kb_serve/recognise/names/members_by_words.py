@@ -24,7 +24,7 @@ _SLIP = 0.79  # similarity of a word with two letters exchanged
 def members_by_words(cls: str, beside: Collection[str], reader: BaseReader) -> list[str]:
     """Paths of the members of a class, or of what a member leads to, that all of some words describe; best first.
 
-    None where too many do.
+    Empty where too many do.
     """
     asked = [word for text in beside for word in words(text) if word not in STOP_WORDS]
     if _SOCKETS.issuperset(asked) and reader.descends(cls, NODE):

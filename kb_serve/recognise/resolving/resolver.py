@@ -399,7 +399,7 @@ class Resolver:
         """
         entry = self._reader.entry(value.symbol)
         if entry is None or entry.kind != "function":
-            return replace(value)
+            return value
         for _, choice in _QUOTED.findall(arguments):
             for cls, maker in self._reader.made_by_choice(choice):
                 if maker == value.symbol:
