@@ -227,10 +227,11 @@ class Searcher:
         """
         asked = {concept.stem: concept.idf for concept in concepts}
         said = frozenset(asked)
+        kinds = said & _KINDS
         called: Scores | None = None
         refs = self.index.levels[0].refs
         for place, number in enumerate(numbers[:_NEAREST].tolist()):
-            name, counts = _name_of(refs[number], said & _KINDS)
+            name, counts = _name_of(refs[number], kinds)
             if len(name) >= _WORDS_OF_A_NAME and name <= said:
                 called = np.zeros(len(numbers), np.float32) if called is None else called
                 called[place] = counts * sum(asked[part] for part in name) / sum(asked.values())

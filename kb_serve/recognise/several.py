@@ -47,6 +47,11 @@ _PRONOUNS = frozenset("him it that them these this those".split())  # noqa: SIM9
 _MOST = 5
 
 
+def _unframed(text: str) -> str:
+    """A request from its verb on."""
+    return _FRAME.sub("", text, count=1)
+
+
 class QuestionPart(NamedTuple):
     """A part as it is written, and the object of the first part, which it may be about."""
 
@@ -58,7 +63,7 @@ class QuestionPart(NamedTuple):
         """What is asked, with what a pronoun stands for where that decides: ``bake smoke`` of ``simulate smoke and bake
         it``.
         """
-        verb, _, rest = _FRAME.sub("", self.text, count=1).partition(" ")
+        verb, _, rest = _unframed(self.text).partition(" ")
         pronoun, _, behind = rest.partition(" ")
         is_left_open = self.about and verb.lower() in _BY_KIND and pronoun.lower() in _PRONOUNS
         return f"{verb} {self.about} {behind}".rstrip() if is_left_open else self.text
@@ -66,7 +71,7 @@ class QuestionPart(NamedTuple):
     @property
     def topic(self) -> str:
         """What may be a topic of its own; empty for a verb of what the first part is about: assign it."""
-        verb, _, rest = _FRAME.sub("", self.text, count=1).lower().partition(" ")
+        verb, _, rest = _unframed(self.text).lower().partition(" ")
         is_of_all = verb in _VERBS or verb in _OF_ALL
         return "" if self.about and is_of_all and rest in _PRONOUNS else self.asked
 
@@ -90,7 +95,7 @@ def parts_of(query: str) -> tuple[QuestionPart, ...]:
         return ()
     stops = [*(start for start, end in ends if end in starts), len(text)]
     clauses = [text[start:stop] for start, stop in zip(starts, stops, strict=True)]
-    _, _, about = _FRAME.sub("", clauses[0], count=1).partition(" ")
+    _, _, about = _unframed(clauses[0]).partition(" ")
     first, *others = clauses
     return (QuestionPart(first), *(QuestionPart(clause, about) for clause in others))
 
@@ -102,13 +107,13 @@ def _is_sure(between: str) -> bool:
 
 def _undoes(clause: str, first: str) -> bool:
     """Whether a clause does the opposite of the first one to the same object: ``and show it at frame 40``."""
-    verb, *objects = _FRAME.sub("", clause, count=1).lower().split(maxsplit=2)
-    before, _, _ = _FRAME.sub("", first, count=1).lower().partition(" ")
+    verb, *objects = _unframed(clause).lower().split(maxsplit=2)
+    before, _, _ = _unframed(first).lower().partition(" ")
     return frozenset({verb, before}) in _OPPOSITES and not _PRONOUNS.isdisjoint(objects[:1])
 
 
 def _is_request(text: str, *, sure: bool) -> bool:
     """Whether a text begins with what is to be done, and says to what."""
-    verb, _, rest = _FRAME.sub("", text, count=1).lower().partition(" ")
+    verb, _, rest = _unframed(text).lower().partition(" ")
     is_verb = verb in _VERBS or (verb in _ALSO_NAMES and (sure or rest.partition(" ")[0] in _OBJECTS))
     return is_verb and bool(rest)

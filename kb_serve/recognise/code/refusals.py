@@ -12,6 +12,7 @@ from kb_serve.recognise.resolving.call_texts import arguments
 
 if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.resolving.chains import Chain
 
 # How many numbers a socket's value has, by its type; and of properties the types that are numbers.
@@ -22,9 +23,10 @@ _NO_NUMBERS = _TEXTS | {"pointer", "collection"}
 _SET = ("property", "socket")
 
 
-def lists_value(symbol: Symbol, chain: Chain) -> bool:
+def is_listed(chain: Chain, path: str, reader: BaseReader) -> bool:
     """Whether a symbol lists the very text that a chain is set to."""
-    return any(item.identifier in chain.values for item in symbol.enum_items)
+    symbol = reader.symbol(path) if chain.values else None
+    return symbol is not None and any(item.identifier in chain.values for item in symbol.enum_items)
 
 
 def refuses(symbol: Symbol, chain: Chain) -> bool:

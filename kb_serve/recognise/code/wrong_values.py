@@ -82,5 +82,5 @@ def _wrong(
 
 def _quoted(item: EnumItem, *, by_setting: bool = False) -> str:
     """An item with where it is taken; or only if that is ``by_setting``, which the code can make right."""
-    told = item.where is not None and (bool(item.where.settings) or not by_setting)
-    return f"`'{item.identifier}'`{f' ({item.where.text})' if item.where and told else ''}"
+    where = item.where if item.where and (item.where.settings or not by_setting) else None
+    return f"`'{item.identifier}'`{f' ({where.text})' if where else ''}"

@@ -43,11 +43,10 @@ class FormerSockets:
         if len(taken) * 2 > len(paths):
             self._tell_still_taken(name, taken, recognition)
             return True
-        lost = [path for path in paths if path not in taken]
         fit = {path: len(around & set(terms(socket_node(path).removeprefix(TYPES)))) for path in paths}
         # What a node got later is meant of that node alone.
         paths = [path for path in paths if fit[path] or self._is_gone(path)]
-        lost = [path for path in lost if path in paths]
+        lost = [path for path in paths if path not in taken]
         if not any(fit.values()):
             said = len(recognition.notes)
             paths = self._lost_by_nobody_else(name, paths, recognition)

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.index.analysis import words
 from kb_build.symbols.api_names import OBJECT, SIDES, TYPES
 from kb_build.symbols.paths import socket_node
-from kb_serve.recognise.code.refusals import lists_value, refuses
+from kb_serve.recognise.code.refusals import is_listed, refuses
 from kb_serve.recognise.names.members_within import members_within
+from kb_serve.recognise.resolving.call_texts import arguments, texts_in
 from kb_serve.recognise.resolving.chain_starts import ROOTS
 from kb_serve.recognise.resolving.chains import ChainStep
 from kb_serve.recognise.resolving.variables import classes_of_parts, usual_classes
@@ -44,7 +45,8 @@ class LostName(NamedTuple):
 def _is_made(chain: Chain, node: str) -> bool:
     """Whether a call in a chain says which node it makes."""
     name = node.removeprefix(TYPES)
-    return bool(name) and any(step.kind == "call" and name in step.text for step in chain.steps)
+    calls = (step.text for step in chain.steps if step.kind == "call")
+    return bool(name) and any(name in texts_in(given) for call in calls for _, given in arguments(call))
 
 
 class LostNames:
@@ -102,7 +104,7 @@ class LostNames:
         if sockets and not removed.gone:
             return True  # what another node got later is hardly meant
         symbols = [symbol for entry in sockets if (symbol := self._reader.symbol(entry.path))]
-        if any(item.identifier in chain.values for symbol in symbols for item in symbol.enum_items):
+        if any(is_listed(chain, entry.path, self._reader) for entry in sockets):
             return True
         nodes = [symbol.owner for symbol in symbols if not refuses(symbol, chain)]
         lost = socket_node(removed.path)
@@ -143,7 +145,7 @@ class LostNames:
         if found is None:
             return None
         removed, lost, today = found
-        if any(self._lists(reading, chain) for reading in readings if reading.complete):
+        if self._lists(readings, chain):
             return None
         least = max(today, default=0.0)
         is_far_likelier = lost >= _USED and lost > _FAR_LIKELIER * least
@@ -167,7 +169,7 @@ class LostNames:
         if found is None:
             return None
         removed, lost, today = found
-        if max(today, default=0.0) and any(self._lists(one, chain) for one in readings if one.complete):
+        if max(today, default=0.0) and self._lists(readings, chain):
             return None
         owners = self._reader.weights([reading.symbols[0] for reading in readings if reading.complete])
         most = max(owners.values(), default=0.0)
@@ -215,10 +217,9 @@ class LostNames:
         symbol = self._reader.symbol(reading.symbols[-1])
         return symbol is not None and refuses(symbol, chain)
 
-    def _lists(self, reading: ResolvedChain, chain: Chain) -> bool:
-        """Whether what a reading leads to lists the very text that a chain is set to."""
-        symbol = self._reader.symbol(reading.symbols[-1]) if chain.values else None
-        return symbol is not None and lists_value(symbol, chain)
+    def _lists(self, readings: Iterable[ResolvedChain], chain: Chain) -> bool:
+        """Whether what any whole reading leads to lists the very text that a chain is set to."""
+        return any(is_listed(chain, one.symbols[-1], self._reader) for one in readings if one.complete)
 
     def _likeliest(self, paths: Iterable[str], owner: Callable[[str], str]) -> str:
         """Of removed symbols that of the class of today that counts most; empty for none."""

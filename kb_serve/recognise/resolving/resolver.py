@@ -12,7 +12,7 @@ from kb_build.index.analysis import key
 from kb_build.symbols.api_names import COLLECTION, GROUPS, NODE, OBJECT, OPERATORS, SIDES, STRUCT, TYPES
 from kb_build.symbols.paths import is_socket
 from kb_build.symbols.python_values import METHODS, python_class
-from kb_serve.recognise.code.refusals import keywords, lacks_keyword, lists_value, refuses
+from kb_serve.recognise.code.refusals import is_listed, keywords, lacks_keyword, refuses
 from kb_serve.recognise.names.holders import by_what_holds_it
 from kb_serve.recognise.resolving.chain_starts import ChainStarts
 from kb_serve.recognise.resolving.chain_values import ChainValue, ChainValues
@@ -142,24 +142,21 @@ class Resolver:
         """
         if not chain.assigned or len(readings) < 2:
             return readings
-        usual = usual_classes(chain.root)
 
-        def is_locked(reading: ResolvedChain, *, but: Sequence[str] = ()) -> bool:
-            entry = self._reader.entry(reading.symbols[-1]) if reading.complete else None
-            return entry is not None and entry.is_read_only and but != [entry.owner]
+        def owner_of_locked(reading: ResolvedChain) -> str:
+            entry = self._reader.entry(reading.symbols[-1])
+            return entry.owner if entry and entry.is_read_only else ""
 
         whole = [reading for reading in readings if reading.complete and reading.fit >= _TOLD]
+        locked = [reading for reading in whole if owner_of_locked(reading)]
         # Where one that can be assigned lists the very value, that is meant all the same.
-        listing = [one for one in whole if not is_locked(one) and self._lists(one, chain)]
-        locked = [one for one in whole if is_locked(one, but=() if listing else usual)]
+        free = (reading.symbols[-1] for reading in whole if reading not in locked)
+        if not any(is_listed(chain, path, self._reader) for path in free):
+            usual = usual_classes(chain.root)
+            locked = [reading for reading in locked if usual != [owner_of_locked(reading)]]
         if not locked or len(locked) == len(whole):
             return readings
         return [reading for reading in readings if reading not in locked]
-
-    def _lists(self, reading: ResolvedChain, chain: Chain) -> bool:
-        """Whether what a reading leads to lists the very text that a chain is set to."""
-        symbol = self._reader.symbol(reading.symbols[-1]) if chain.values else None
-        return symbol is not None and lists_value(symbol, chain)
 
     def onward(self, path: str, steps: tuple[ChainStep, ...]) -> ResolvedChain:
         """Follows steps from a symbol, as if an expression had led there."""
