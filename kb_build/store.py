@@ -8,6 +8,7 @@ import sqlite3
 from array import array
 from collections import Counter
 from dataclasses import dataclass, field
+from functools import cache
 from typing import TYPE_CHECKING
 
 import sqlite_utils
@@ -27,7 +28,7 @@ from kb_build.index.postings import (
     phrase_postings,
     vocabulary,
 )
-from kb_build.index.query_expansions import load_query_expansions, query_expansions
+from kb_build.index.query_expansions import load_query_expansions, page_expansions, placed_expansions
 from kb_build.index.stem_numbers import StemNumbers
 from kb_build.index.value_names import find_value_names
 from kb_build.index.weights import symbol_weights
@@ -63,9 +64,9 @@ _FEW_CALLED_SO = 3
 class Contents:
     """Everything that goes into one base.
 
-    ``summaries`` are by slug, ``buttons`` by operator. ``removed_symbols`` and ``tables`` are called last: they may
-    still be computed meanwhile. Without ``tables``, they are made of symbols and pages, as if no script used the
-    symbols.
+    ``summaries`` are by slug, ``buttons`` by operator. ``removed_symbols`` and ``tables`` are called as late as can be:
+    they may still be computed meanwhile. Without ``tables``, they are made of symbols and pages, as if no script used
+    the symbols.
     """
 
     symbols: Sequence[Symbol]
@@ -259,15 +260,18 @@ def _write(part: Path, contents: Contents) -> None:
             f"PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; PRAGMA application_id={APPLICATION_ID};"
             f"PRAGMA user_version={SCHEMA_VERSION};{DDL}"
         )
-        expansions = query_expansions(contents.summaries)
         symbols, pages = contents.symbols, contents.pages
+        removed_symbols = cache(contents.removed_symbols)
+        known = {symbol.path for symbol in symbols}
+        placed = placed_expansions(load_query_expansions(), known, removed_symbols)
+        expansions = placed | page_expansions(contents.summaries)
         labelled = find_labelled_operators(symbols, pages, contents.links, contents.buttons)
         passages = passages_of(labelled, pages) | find_passages(symbols, pages, contents.links)
         units = make_units(symbols, pages, contents.links, contents.summaries, expansions, passages)
         with connection:
             _write_pages(connection, contents.pages, contents.summaries)
             write_index(connection, units, expansions)
-            _write_removed_symbols(connection, contents.removed_symbols())
+            _write_removed_symbols(connection, removed_symbols())
             _insert(connection, "still_works", contents.still_works, 2)
             _insert(connection, "passages", ((path, *passage) for path, passage in passages.items()), 4)
             names = find_label_names(symbols, pages, passages, labelled)
@@ -283,7 +287,7 @@ def _write(part: Path, contents: Contents) -> None:
             _write_symbols(connection, tables)
             _write_usage(connection, tables.uses)
             # How often people ask who do not know the name; some areas have more plain questions than others.
-            asked = load_query_expansions(plain=False)
+            asked = placed_expansions(load_query_expansions(plain=False), known, removed_symbols)
             weights = symbol_weights(contents.symbols, passages, asked, tables.uses)
             _insert(connection, "weights", weights.items(), 2)
             _insert(connection, "meta", contents.meta.items(), 2)

@@ -19,6 +19,8 @@ AREAS: dict[str, frozenset[str]] = {
     "movie_clip/": frozenset(
         "clip footage marker markers mask masking matchmove movie shot tracker tracking video".split()  # noqa: SIM905
     ),
+    "editors/texture_node/": frozenset(("brush", "brushes", "editor", "legacy")),
+    "render/materials/legacy_textures/": frozenset(("brush", "brushes", "legacy")),
     "troubleshooting/gpu/": frozenset(
         "amd apple card directx gpu graphics intel mac mesa metal nvidia opengl vulkan windows".split()  # noqa: SIM905
     ),

@@ -18,7 +18,7 @@ from rapidfuzz.distance import OSA
 
 from kb_build.index.analysis import STOP_WORDS, stem, stems_of, words
 from kb_build.schema import DOCUMENT_KINDS
-from kb_build.symbols.api_names import OPERATORS
+from kb_build.symbols.api_names import NODE, OPERATORS
 from kb_serve.rank.inverted_index import InvertedIndex
 from kb_serve.rank.scoring import Concept, score_all
 from kb_serve.rank.signals import Evidence, scores_of
@@ -46,14 +46,16 @@ _CANDIDATES = 400
 _DIFFERENT = 4  # hits, before what says the same as one of them may follow
 _OF_A_CHAPTER = 3
 _WORDS_OF_A_NAME = 2  # of an operator's name that a query hardly says by chance
-_AS_MEMBER = 0.3  # what it counts that a query says a member's name and its owner's, next to an operator's
+# What it counts that a query says a member's name and its owner's, or a node's label, next to an operator's name.
+_AS_MEMBER = 0.3
+_AS_NODE = 0.6
 _KINDS = frozenset(map(stem, ("modifier", "constraint", "node")))  # who says one means no operator without it
 _NEAREST = 30  # units by their texts, among which such a name is looked for
 _OTHERS = 0.4  # share of what further phrases add to the nearest that counts
 _MEMBERS = 3  # of a class that are told with it
 _NEAR = 0.35  # share of the best member's score below which another one is not told
 _NO_NAME = frozenset[str]()
-_INDEX = DOCUMENT_KINDS.index("index")
+_INDEX, _NODE = map(DOCUMENT_KINDS.index, ("index", "node"))
 
 
 class SearchHit(NamedTuple):
@@ -223,19 +225,36 @@ class Searcher:
 
     def _called(self, numbers: NDArray[np.intp], concepts: Sequence[Concept]) -> Scores | None:
         """The share of the query that the names of operators are, of some words, which the query says whole, and in
-        part that the names of members are with their owners'; None if it says none.
+        part that the labels of nodes are, and the names of members with their owners'; None if it says none.
         """
         asked = {concept.stem: concept.idf for concept in concepts}
         said = frozenset(asked)
         kinds = said & _KINDS
         called: Scores | None = None
         refs = self.index.levels[0].refs
-        for place, number in enumerate(numbers[:_NEAREST].tolist()):
-            name, counts = _name_of(refs[number], kinds)
+        near = numbers[:_NEAREST].tolist()
+        labels = self._node_labels(near)
+        for place, number in enumerate(near):
+            ref = refs[number]
+            name, counts = (stems_of(labels[ref]), _AS_NODE) if ref in labels else _name_of(ref, kinds)
             if len(name) >= _WORDS_OF_A_NAME and name <= said:
                 called = np.zeros(len(numbers), np.float32) if called is None else called
                 called[place] = counts * sum(asked[part] for part in name) / sum(asked.values())
         return called
+
+    def _node_labels(self, numbers: Iterable[int]) -> dict[str, str]:
+        """The labels of the classes of nodes that are among some units."""
+        units = self.index.levels[0]
+        nodes = [
+            units.refs[number]
+            for number in numbers
+            if units.kinds[number] == _NODE and not units.members[number]
+        ]
+        self._reader.entry.load(nodes)
+        entries = map(self._reader.entry, nodes)
+        return {
+            entry.path: entry.label for entry in entries if entry and self._reader.descends(entry.path, NODE)
+        }
 
     def _asked(self, found: Scored, numbers: NDArray[np.intp], topic: NDArray[np.int32]) -> Scores:
         """How nearly the query is, word by word, what units or their topics are asked for, from 0: nothing.

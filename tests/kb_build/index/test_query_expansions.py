@@ -8,9 +8,10 @@ import re
 from places import REPO
 
 from kb_build.index.documents import make_units
-from kb_build.index.query_expansions import load_query_expansions
+from kb_build.index.query_expansions import load_query_expansions, placed_expansions
 from kb_build.summaries.shipped import ShippedSummary
 from kb_build.symbols.records import Link, Page, Section, Symbol
+from kb_build.versions.removed_symbols import RemovedSymbols
 
 QUERIES = REPO / "corpora" / "queries"
 SUMMARIES = REPO / "corpora" / "summaries"
@@ -64,3 +65,36 @@ def test_a_symbol_without_a_page_has_its_own_phrases() -> None:
     hit = Symbol(path="bpy.types.Object.ray_cast", kind="function", owner="bpy.types.Object")
     (unit,) = make_units([hit], [], [], {}, {hit.path: "what lies under the mouse"})
     assert unit.expansions == ("what lies under the mouse",)
+
+
+def test_phrases_for_what_a_version_lacks_are_said_of_what_it_has_in_its_place() -> None:
+    types = "bpy.types."
+    table = {
+        f"{types}Strip.mute": "silence a strip",
+        f"{types}Scene.compositing_node_group": "set up the compositor",
+        f"{types}Scene.node_tree": "nodes of the scene",
+        f"{types}ActionSlot": "slot of an action",
+        f"{types}Object.location": "where it is",
+    }
+    known = {
+        f"{types}{path}"
+        for path in ("Sequence.mute", "Scene.node_tree", "Scene.use_nodes", "Object.location")
+    }
+    rows = (
+        (f"{types}Strip.mute", 0, f"{types}Sequence.mute", "", "4.4", "notes"),
+        (f"{types}Scene.compositing_node_group", 0, f"{types}Scene.node_tree", "Otherwise.", "5.0", "notes"),
+        (f"{types}Scene.compositing_node_group", 1, f"{types}Scene.use_nodes", "", "5.0", "notes"),
+    )
+    placed = placed_expansions(table, known, lambda: RemovedSymbols(successors=rows))
+    assert placed == {
+        f"{types}Sequence.mute": "silence a strip",
+        f"{types}Scene.node_tree": "nodes of the scene; set up the compositor",
+        f"{types}Object.location": "where it is",
+    }
+
+
+def test_what_a_version_lacks_is_not_asked_for_where_it_lacks_nothing() -> None:
+    def computed() -> RemovedSymbols:
+        raise AssertionError
+
+    assert placed_expansions({"bpy.types.Object": "a thing"}, {"bpy.types.Object"}, computed)

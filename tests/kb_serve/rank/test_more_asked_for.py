@@ -99,6 +99,20 @@ def test_a_name_that_is_said_with_its_owners_comes_first(
     assert ids(kb, question)[0] == first
 
 
+@pytest.mark.parametrize(
+    ("question", "node"),
+    [
+        ("how to add a voronoi texture", "ShaderNodeTexVoronoi"),
+        ("how to mix two shaders", "ShaderNodeMixShader"),
+        ("sky texture world", "ShaderNodeTexSky"),
+    ],
+)
+def test_a_node_whose_label_is_said_comes_before_pages_about_others(
+    question: str, node: str, kb: KnowledgeBase
+) -> None:
+    assert kb.query(question).hits[0].id == f"bpy.types.{node}"
+
+
 def test_what_is_done_without_comes_last(kb: KnowledgeBase) -> None:
     found = ids(kb, "point the camera at an object without a constraint")
     assert "mathutils.Vector.to_track_quat" in found
