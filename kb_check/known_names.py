@@ -13,10 +13,11 @@ from kb_check.likely_names import by_label
 from kb_serve.rank.meant_members import meant_members
 from kb_serve.recognise.names.corrections import by_first_word, is_misspelling, nearest
 from kb_serve.recognise.names.enum_values import EnumValues
-from kb_serve.recognise.names.likely_keywords import likely_keywords
+from kb_serve.recognise.names.likely_keywords import likely_parameters
 from kb_serve.recognise.names.likely_values import likely_values
 from kb_serve.recognise.names.node_names import is_like_a_node, nodes_meant
 from kb_serve.recognise.names.operator_words import OperatorWords, same_operator_words
+from kb_serve.recognise.names.set_elsewhere import set_elsewhere
 from kb_serve.recognise.notes import Notes
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup, for_reading
@@ -134,17 +135,19 @@ class KnownNames:
         removed = self._lookup.of_path(path)
         return self._removed(removed) if removed else None
 
-    def parameter(self, function: str, name: str, names: Iterable[str]) -> Lacking:
-        """A keyword that a function or operator does not take; ``names`` are those that it takes."""
+    def parameter(self, function: str, name: str, names: Iterable[str], given: str = "") -> Lacking:
+        """A keyword that a function or operator does not take; ``names`` are those that it takes, ``given`` is what is
+        written for it.
+        """
         part = f"({name})"
         if removed := self._lookup.of_part(function, part) or self._of_former(function, part):
             return self._removed_of(f"{function}(", removed, f"`{function}` takes no `{name}`")
-        names = list(names)
         symbol = self.reader.symbol(function)
-        labels = {one.name: one.label for one in symbol.parameters} if symbol else {}
-        similar = likely_keywords(name, {one: labels.get(one, "") for one in names})
+        similar = likely_parameters(symbol, name, given) if symbol else self._alike(name, names)
         lacking = self._no_part(function, name, names, f"`{function}` takes no `{name}`", "It takes", similar)
-        return replace(lacking, symbol=f"{function}({name})")
+        elsewhere = set_elsewhere(symbol, name, self.reader) if symbol and not similar else ""
+        message = f"{lacking.message} {elsewhere}".rstrip()
+        return replace(lacking, symbol=f"{function}({name})", message=message)
 
     def changed_parameters(self, function: str) -> tuple[Lacking, ...]:
         """The parameters that a function had once, but for those that only got another name."""

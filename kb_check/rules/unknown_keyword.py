@@ -35,9 +35,10 @@ def _check(script: Script) -> Iterator[Finding]:
         function = row.missing[0]
         symbol = script.api.symbols.symbol(function)
         parameters = {parameter.name: parameter for parameter in symbol.parameters} if symbol else {}
-        lacking = script.names.parameter(function, row.value, parameters)
-        named = parameters.get(argument_of(lacking.replacement))
         value = _given(script, row)
+        text = ast.unparse(value) if isinstance(value, ast.Constant) else ""
+        lacking = script.names.parameter(function, row.value, parameters, text)
+        named = parameters.get(argument_of(lacking.replacement))
         if named is not None and value is not None and not may_take(script, named, value):
             lacking = replace(lacking, replacement="", sure=False)
         yield lacking_finding(script, RULE.id, row, lacking)

@@ -179,7 +179,7 @@ class Recogniser:
             for removed in old:
                 recognition.add_removed(removed)
             gone = {removed.path for removed in (*old, *recognition.removed)}
-            notes = list(wrong_arguments(chain, symbol, gone))
+            notes = list(wrong_arguments(chain, symbol, self._reader, gone))
             recognition.notes += (*notes, *wrong_values(chain, symbol, gone, self._reader))
             if any(note.startswith(NO_OVERRIDE) for note in notes):
                 recognition.add(OVERRIDE, 0.98, "error message")  # before the operator that does not take it
@@ -191,7 +191,7 @@ class Recogniser:
             return
         lost = [next(self._old.in_values(chain, guess), None) for guess in guesses]
         if len(guesses) == 1 and keywords(chain):  # which may have told it from others of its name
-            recognition.notes += wrong_arguments(chain, guesses[0])
+            recognition.notes += wrong_arguments(chain, guesses[0], self._reader)
         # A value that what it may be read as once took tells that it is meant.
         for removed in filter(None, lost):
             recognition.add_removed(removed)

@@ -7,40 +7,42 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.paths import split_path
 from kb_serve.recognise.code.contexts import NO_OVERRIDE, with_context
-from kb_serve.recognise.names.likely_keywords import likely_keywords
+from kb_serve.recognise.names.likely_keywords import likely_parameters
+from kb_serve.recognise.names.set_elsewhere import set_elsewhere
 from kb_serve.recognise.resolving.call_texts import arguments
 from kb_serve.signatures import signature_arguments
 from simworlds.counting import counted
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator
+    from collections.abc import Collection, Iterator, Mapping
 
     from kb_build.symbols.records import Symbol
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.resolving.chains import Chain
 
-_NESTED = re.compile(r"""\([^()]*\)|\[[^\[\]]*\]|\{[^{}]*\}|'[^']*'|"[^"]*\"""")
-_KEYWORD = re.compile(r"(?:^|,)\s*(\w+)\s*=(?!=)")
 _VALUE = re.compile(r"""(["'])[^"']*\1|-?[\d.]+""")  # a text, a number
 _FRACTION = re.compile(r"-?(?:\d+\.\d*|\.\d+)")
 _EXECUTION_CONTEXT = re.compile(r"(?:INVOKE|EXEC)_\w+")
-_DEPTH = 5
 
 
-def unknown_keywords(symbol: Symbol, names: Iterable[str]) -> Iterator[str]:
-    """A sentence for each of ``names`` that is not a parameter of ``symbol``, with the most similar parameters."""
+def unknown_keywords(symbol: Symbol, given: Mapping[str, str], reader: BaseReader) -> Iterator[str]:
+    """A sentence for each keyword that is not a parameter of ``symbol``, with the most similar parameters, or where
+    else that is set. ``given``: name → what is written for it, or nothing.
+    """
     known = [parameter.name for parameter in symbol.parameters]
-    for name in names:
+    for name, value in given.items():
         if name in known or any(other.startswith("*") for other in known):
             continue
-        if not known:
-            yield f"`{symbol.path}` takes no arguments."
-            continue
-        similar = likely_keywords(name, {one.name: one.label for one in symbol.parameters})
-        closest = f"; closest: {', '.join(f'`{other}`' for other in similar)}" if similar else ""
-        yield f"`{symbol.path}` takes no `{name}`{closest}."
+        takes = f"takes no `{name}`" if known else "takes no arguments"
+        if closest := likely_parameters(symbol, name, value):
+            yield f"`{symbol.path}` {takes}; closest: {', '.join(f'`{other}`' for other in closest)}."
+        else:
+            yield f"`{symbol.path}` {takes}. {set_elsewhere(symbol, name, reader)}".rstrip()
 
 
-def wrong_arguments(chain: Chain, symbol: Symbol, removed: Collection[str] = ()) -> Iterator[str]:
+def wrong_arguments(
+    chain: Chain, symbol: Symbol, reader: BaseReader, removed: Collection[str] = ()
+) -> Iterator[str]:
     """Sentences on the wrong arguments of a call, as far as its text shows; but on ``removed`` ones, given by path."""
     is_method = symbol.kind in {"operator", "function"} and not symbol.name.startswith("__")
     if chain.call is None or not is_method:
@@ -54,11 +56,11 @@ def wrong_arguments(chain: Chain, symbol: Symbol, removed: Collection[str] = ())
         yield from _by_place_to_operator(symbol, text)
     else:
         yield from _by_place(symbol, text)
-    for _ in range(_DEPTH):
-        text = _NESTED.sub("0", text)
     if symbol.kind == "operator" or symbol.path.startswith("bmesh.ops.") or places_of(symbol) is not None:
-        names = [name for name in _KEYWORD.findall(text) if f"{symbol.path}({name})" not in removed]
-        yield from unknown_keywords(symbol, names)
+        given = {name: written for name, written in arguments(text) if name}
+        yield from unknown_keywords(
+            symbol, {name: given[name] for name in given if f"{symbol.path}({name})" not in removed}, reader
+        )
 
 
 def _by_place_to_operator(symbol: Symbol, text: str) -> Iterator[str]:

@@ -64,10 +64,8 @@ class Keywords:
             if symbol.parameters or symbol.kind == "operator":
                 if removed := self._removed.of_part(symbol.path, f"({name})"):
                     recognition.add_removed(removed)
-                elif symbol.parameters:
-                    recognition.notes += unknown_keywords(symbol, [name])
                 else:
-                    recognition.notes.append(f"`{symbol.path}` takes no arguments.")
+                    recognition.notes += unknown_keywords(symbol, {name: ""}, self._reader)
                 recognition.add(symbol.path, 0.9, "error message")
                 return
         if shared:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from typing import TYPE_CHECKING
 
@@ -11,20 +12,38 @@ from kb_serve.recognise.names.corrections import is_misspelling, nearest
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
 
+    from kb_build.symbols.records import Symbol
+
 # Words that say how a thing is used, and not what it is.
 EMPTY_WORDS = frozenset({"use", "is", "has", "show", "do", "set", "get"})
+_TEXT = re.compile(r"""(["'])([^"']+)\1""")
 _MOST = 3
 _LEAST = 0.3  # share of what two names say that both do
 _LEAST_OF_BEST = 0.6
 _BEGINNING = 4  # letters of a word that another one begins with: anim, of animation
 _BEGINNING_OF_NAME = 3
+_EXTENTS = frozenset({"depth", "diameter", "height", "length", "radius", "size", "width"})
+
+
+def likely_parameters(symbol: Symbol, written: str, value: str = "") -> list[str]:
+    """The parameters that may be meant by a keyword that a call does not take: those that are called alike, of which
+    those that take the text that is written for it, or the only one that takes it.
+    """
+    alike = likely_keywords(written, {one.name: one.label for one in symbol.parameters})
+    if (text := _TEXT.fullmatch(value)) is None:
+        return alike
+    taking = [
+        one.name for one in symbol.parameters if text[2] in {item.identifier for item in one.enum_items}
+    ]
+    return [name for name in alike if name in taking] or (taking if len(taking) == 1 else alike)
 
 
 def likely_keywords(written: str, labels: Mapping[str, str]) -> list[str]:
     """The arguments that a name may mean which a call does not take, best first; ``labels`` is argument → label.
 
     First those of the same words in another order, and those that it is a misspelling of; then those that say most of
-    what it says and little else, ``bake_anim`` for ``use_anim``; then those that are spelt alike, or else begin alike.
+    what it says and little else, ``bake_anim`` for ``use_anim``; then those that are spelt alike, or else begin alike;
+    else, of an extent, the others: a cylinder's height is its depth.
     """
     found = [
         *(name for name in labels if sorted(words(name)) == sorted(words(written))),
@@ -32,7 +51,9 @@ def likely_keywords(written: str, labels: Mapping[str, str]) -> list[str]:
         *_of_same_meaning(written, labels),
         *(name for name, _ in nearest(written, labels)),
     ]
-    return list(dict.fromkeys(found or _beginning_alike(written, labels)))[:_MOST]
+    found = found or [*_beginning_alike(written, labels)]
+    found = found or [name for name in labels if {written, name} <= _EXTENTS]
+    return list(dict.fromkeys(found))[:_MOST]
 
 
 def _of_same_meaning(written: str, labels: Mapping[str, str]) -> Iterator[str]:

@@ -23,6 +23,14 @@ _OF_ALL = frozenset({stem("object")})
 _LONG = 4  # letters of a word that may stand at the end of another: ``file``, of ``mainfile``
 
 
+def operator_of_class(name: str) -> str:
+    """The path of the operator whose class a name is, ``MESH_OT_rip``, by which macros hold its properties; empty for
+    other names.
+    """
+    module, mark, own = name.partition("_OT_")
+    return f"{OPERATORS}{module.lower()}.{own}" if mark else ""
+
+
 class _Words(NamedTuple):
     """The stems of an operator's words and of its module's."""
 

@@ -14,6 +14,7 @@ from kb_build.symbols.paths import is_socket
 from kb_build.symbols.python_values import METHODS, python_class
 from kb_serve.recognise.code.refusals import is_listed, keywords, lacks_keyword, refuses
 from kb_serve.recognise.names.holders import by_what_holds_it
+from kb_serve.recognise.names.operator_words import operator_of_class
 from kb_serve.recognise.resolving.chain_starts import ChainStarts
 from kb_serve.recognise.resolving.chain_values import ChainValue, ChainValues
 from kb_serve.recognise.resolving.chains import ChainStep
@@ -282,9 +283,8 @@ class Resolver:
 
     def _part_of_macro(self, name: str) -> str:
         """The operator that a parameter of another one holds the properties of: ``MESH_OT_rip``; empty for others."""
-        module, mark, own = name.partition("_OT_")
-        path = f"{OPERATORS}{module.lower()}.{own}"
-        return path if mark and self._reader.entry(path) else ""
+        path = operator_of_class(name)
+        return path if path and self._reader.entry(path) else ""
 
     def _of_collection(self, value: ChainValue, name: str) -> SymbolEntry | None:
         """A member of a collection: of its own class, of all collections, or of those of property groups."""
