@@ -32,16 +32,17 @@ _LONGEST = 100  # characters of a line that is shown
 _SPAN = re.compile(r"`([^`\n]+)`")
 _FAILED = re.compile(r"^\s*File .+, line \d+.*\n\s+(.+)$", re.MULTILINE)
 _FENCED = re.compile(r"^```\w*\n(.*?)^```", re.DOTALL | re.MULTILINE)
-_IMPORTED = ("mathutils", "mathutils.bvhtree", "mathutils.kdtree")  # whose classes scripts import by name
+# The modules of which scripts import classes and functions by name, that hardly anything else is called by.
+_IMPORTED = ("mathutils", "mathutils.bvhtree", "mathutils.kdtree", "bpy.props")
 _OF_DATA = (TYPES, "mathutils.")
 _INSTANCES = frozenset({"self", "cls"})  # of the script's own classes
 # What is wrong in a piece of a script too, whatever stands around it. Names, keywords, sockets, products and the values
 # of properties are left out: of these an answer tells by itself, as it does of what other Blenders have.
 _RULES = (
-    "callback-signature", "crash", "given-callback", "list-attribute", "missing-argument", "no-custom-properties",
-    "not-subscriptable", "operator-idname", "positional-argument", "read-only", "refused-call", "refused-path",
-    "refused-property", "refused-value", "unknown-node", "unknown-value", "wrong-count", "wrong-mode", "wrong-size",
-    "wrong-type",
+    "callback-signature", "crash", "given-callback", "list-attribute", "lost-property", "missing-argument",
+    "no-custom-properties", "not-subscriptable", "operator-idname", "positional-argument", "read-only", "refused-call",
+    "refused-path", "refused-property", "refused-value", "unknown-node", "unknown-value", "wrong-count", "wrong-mode",
+    "wrong-size", "wrong-type",
 )  # fmt: skip
 _NEVER_TRUE = "never-true"  # a warning, as Blender refuses nothing
 _NO_VALUE = "unknown-value"

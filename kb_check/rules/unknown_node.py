@@ -39,6 +39,7 @@ from kb_check.node_trees import tree_added_to
 from kb_check.raised import refusing_class
 from kb_check.rule import Rule
 from kb_check.script import once_for_each, once_per_script
+from kb_serve.recognise.names.node_names import tree_of_family
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -235,7 +236,7 @@ def _refused(script: Script, call: CallSite, node: ast.expr, name: str) -> Itera
         said = f"`{symbol.path}` is a node of {' and '.join(symbol.trees)}: a `{tree}` refuses it"
     else:
         return
-    others = _others(script, name, tree) if tree else ()
+    others = _others(script, name, tree or tree_of_family(name))
     instead = f" Use {' or '.join(f'`{other}`' for other in others)}." if others else ""
     yield Finding(RULE.id, "error", script.span(node), f"{said}.{instead}", symbol.path, others)
 

@@ -9,6 +9,7 @@ from kb_build.symbols.api_names import HANDLERS, TYPES
 from kb_build.symbols.lines import GET_EVALUATED
 from kb_serve.recognise.code.products import CLASSES, WITH_AT
 from kb_serve.recognise.messages.nameless.python import PLAIN_FUNCTION
+from kb_serve.recognise.messages.none_before import TAKES_NO_MODIFIER
 from kb_serve.recognise.messages.ways_to_run import NO_FLUIDS
 
 _STROKE = "_bpy_internal.grease_pencil.stroke.GreasePencilStroke"
@@ -20,7 +21,8 @@ _PERSISTENT = f"{HANDLERS}persistent"
 
 
 def _stems(text: str) -> frozenset[str]:
-    return frozenset(map(stem, words(text)))
+    """The stems of some words; of ``h264`` the number alone, as a letter is a variable of any script."""
+    return frozenset(stem(word) for word in words(text) if len(word) > 1)
 
 
 class Advice(NamedTuple):
@@ -360,6 +362,7 @@ ADVICE: tuple[Advice, ...] = (
         ),
     ),
     Advice(_IN_ZONES, frozenset({"bpy.ops.ptcache.bake_all"}), asked=_stems("geometry node nodes zone")),
+    Advice(TAKES_NO_MODIFIER, _of("ObjectModifiers.new"), asked=_stems("none nothing fails silently")),
     Advice(_TYPED, _of("TextCurve.body"), asked=_stems("animate change counter frame keyframe over time")),
     Advice(
         _ADDED_TO_WORLD,

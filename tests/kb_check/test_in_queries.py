@@ -40,6 +40,7 @@ if TYPE_CHECKING:
         ("bpy.ops.object.constraint_add(type='COPY_POS')", "is no value of"),
         ("kd.find_n((0, 0, 0))", "also needs `n`"),
         ("v = Vector((1, 0, 0))\nobj.location = v.length", "takes 3 floats, not a float."),
+        ("class P(bpy.types.PropertyGroup):\n    size = FloatProperty()", "Write `size: FloatProperty()`."),
         ("Is this right?\nobj.scale = 2", "takes 3 floats, not the single number 2."),
         ("obj.scale = 2\nWhy does that fail?", "takes 3 floats, not the single number 2."),
         ("why does `obj.scale = 2` fail", "takes 3 floats, not the single number 2."),

@@ -73,14 +73,20 @@ def context_for(operator: Symbol, like: str = "", given: str = "") -> str:
 
 def _in_area(call: str, area: str, also: Sequence[str]) -> str:
     """Lines that set what a call of an operator wants besides, and give it an area; ``any`` for the first that there
-    is.
+    is. A screen has few of the types: where it lacks one, its first area becomes one.
     """
     areas = "bpy.context.window.screen.areas"
-    found = f"{areas}[0]" if area == "any" else f"next(a for a in {areas} if a.type == '{area}')"
+    found = [f"area = {areas}[0]"]
+    if area != "any":
+        found = [
+            f"areas = {areas}",
+            f"area = next((a for a in areas if a.type == '{area}'), areas[0])",
+            f"area.type = '{area}'",
+        ]
     first = next((at for at, text in enumerate(also) if _OF_AREA.search(text)), len(also))
     lines = [
         *also[:first],
-        f"area = {found}",
+        *found,
         *also[first:],
         "region = next(r for r in area.regions if r.type == 'WINDOW')",
         f"{_WITH}(area=area, region=region): {call}",

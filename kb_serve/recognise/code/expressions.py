@@ -318,6 +318,13 @@ class Expressions:
         if readings[0].keyed:
             name = next(step.text for step in reversed(chain.steps) if step.kind == "key")
             recognition.notes.append(self._custom.note(readings[0].keyed, name))
+        if former := self._old.beneath(chain, readings[0]):
+            cls = former.path.rpartition(".")[0]
+            recognition.notes.append(
+                f"`{readings[0].symbols[-1]}` is another thing than `{cls}` had by that name until {former.last}: "
+                f"that is `{former.targets[0]}` now."
+            )
+            recognition.add(former.targets[0], 0.97 - later, "successor")
         last = self._reader.symbol(readings[0].symbols[-1])
         own = chain.attributes[-1] if chain.attributes else ""
         if last and own not in {"", last.name} and (note := self._custom.on_operators(last, own)):

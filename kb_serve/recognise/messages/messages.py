@@ -13,6 +13,7 @@ from kb_serve.recognise.messages.freed_data import FreedData
 from kb_serve.recognise.messages.given_values import GivenValues
 from kb_serve.recognise.messages.imports import Imports
 from kb_serve.recognise.messages.indices import Indices
+from kb_serve.recognise.messages.item_counts import ItemCounts
 from kb_serve.recognise.messages.keys import Keys
 from kb_serve.recognise.messages.keywords import Keywords
 from kb_serve.recognise.messages.lacking_owners import LackingOwners
@@ -77,6 +78,7 @@ class Messages:
             Keywords(reader, removed, symbols).explain,
             ArgumentPlaces(reader, symbols).explain,
             Indices(reader).explain,
+            ItemCounts(reader).explain,
             Keys(reader, FormerSockets(reader, removed)).explain,
         )
 

@@ -51,10 +51,6 @@ _ANYWHERE = (
         "expected a set, not a str",
         "An enumeration of flags takes a set of texts: `{'A'}`, `{'A', 'B'}`.",
     ),
-    (
-        "sequences of dimension 0 should contain",
-        "The value has another number of items than the property: a colour with alpha has 4, one without 3.",
-    ),
 )
 _ONE_OF_SEVERAL = re.compile(r"item\.attr = val:\s*$")
 _NOT_ONE = (

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.flags import alike_nodes
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.names.node_names import add_nodes_meant
+from kb_serve.recognise.names.node_names import add_nodes_meant, tree_of_family
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 
 _MEANT = 0.95  # how sure a node is that an undefined type may mean
+_INSTEAD = 0.97  # … that is of the same name in another family
 
 
 class NodeTypes:
@@ -26,10 +28,23 @@ class NodeTypes:
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds the node of that name, the one that it was in another version, or those most like it."""
         for match in forms.first_matches(forms.NO_NODE_TYPE, query):
-            if entry := self._reader.entry(TYPES + match["type"]):
-                recognition.add(entry.path, 0.95, "error message")
+            if symbol := self._reader.symbol(TYPES + match["type"]):
+                recognition.add(symbol.path, _MEANT, "error message")
+                if not symbol.trees:
+                    self._tell_of_no_tree(symbol.name, recognition)
             else:
                 for removed in self._removed.spelled(match["type"]):
                     recognition.add_removed(removed)
                 if not recognition.removed:
                     add_nodes_meant(match["type"], _MEANT, self._reader, recognition)
+
+    def _tell_of_no_tree(self, name: str, recognition: Recognition) -> None:
+        """Adds what the trees of its family take instead of a class of nodes that none takes."""
+        tree = tree_of_family(name)
+        others = [
+            one.path for one in map(self._reader.symbol, alike_nodes(name)) if one and tree in one.trees
+        ]
+        instead = f" Use {' or '.join(f'`{other}`' for other in others)}." if others else ""
+        recognition.notes.append(f"`{TYPES}{name}` is a class of nodes that no tree takes.{instead}")
+        for other in others:
+            recognition.add(other, _INSTEAD, "error message")

@@ -25,6 +25,12 @@ _FEW = 3
 _IS_READ = 0.98  # how sure what may be None is that the code reads the name of: before what it then lacks
 _OFTEN = 6.0  # the weight from which on scripts use a pointer often
 _MANY = 8  # where more properties may be None, none is likely enough to be named
+_MODIFIER = f"{TYPES}Modifier"
+_MAKES_MODIFIERS = f"{TYPES}ObjectModifiers.new"
+TAKES_NO_MODIFIER = (
+    "`obj.modifiers.new(…)` returns None, without an error, where an object of that type takes no such modifier: an "
+    "empty, a light or a camera takes none at all, and a Grease Pencil object its own."
+)
 _IS_NONE = "The object before `.{name}`{of} is None: it does not exist (yet), or was not found."
 
 
@@ -40,13 +46,9 @@ class NoneBefore:
 
     def explain(self, name: str, query: str, recognition: Recognition) -> None:
         """Adds what may have been None before ``.name``: pointers to classes that have the name, or once had it, what
-        the context gives, and look-ups by name. Where the code calls what always returns None, that alone.
+        the context gives, and look-ups by name. Where the code calls what gives None, that alone.
         """
-        if method := self._returning_none(name, query):
-            recognition.notes.append(
-                f"`{method}` changes its own value and returns None: read it in a line of its own."
-            )
-            recognition.add(method, _IS_READ, "error message")
+        if self._tell_of_call(name, query, recognition):
             return
         owners = {
             entry.owner.removeprefix(TYPES)
@@ -85,7 +87,7 @@ class NoneBefore:
             likely = self._empty_before(name)
             told = set(likely)
         if usual and not likely:
-            self._tell_absent(usual, recognition)
+            self._tell_usual(usual, owners, recognition)
             return
         self._tell(name, owners, holders, recognition)
         for rank, entry in enumerate(self._reader.heaviest(likely)[:_FEW]):
@@ -98,6 +100,45 @@ class NoneBefore:
                 recognition.notes.append(f"`{entry.path}` is None before {before}.")
             elif entry in told and (setting := self._setting(entry)):
                 recognition.notes.append(f"`{entry.path}` is None on what is new: set it, `{setting}`.")
+
+    def _tell_of_call(self, name: str, query: str, recognition: Recognition) -> bool:
+        """Adds the call in the code that gives None, or gave it here; whether there is one."""
+        if method := self._returning_none(name, query):
+            recognition.notes.append(
+                f"`{method}` changes its own value and returns None: read it in a line of its own."
+            )
+            recognition.add(method, _IS_READ, "error message")
+        elif self._makes_modifier(name, query):
+            self._tell_of_modifiers(name, recognition)
+        else:
+            return False
+        return True
+
+    def _makes_modifier(self, name: str, query: str) -> bool:
+        """Whether the code beside a message makes a modifier, and reads or sets its ``.name``."""
+        chains = with_bindings(query, find_chains(query))
+        texts = ([step.text for step in chain.steps] for chain in chains)
+        return any(
+            name in steps and {"modifiers", "new"} <= set(steps[: steps.index(name)]) for steps in texts
+        )
+
+    def _are_modifiers(self, owners: set[str]) -> bool:
+        """Whether it is mostly modifiers that have a name, and many."""
+        modifiers = [owner for owner in owners if self._reader.descends(TYPES + owner, _MODIFIER)]
+        return len(owners) > _MANY and 2 * len(modifiers) >= len(owners)
+
+    def _tell_usual(self, member: SymbolEntry, owners: set[str], recognition: Recognition) -> None:
+        """Adds what is likeliest None before a name that many things have: a modifier that was not made, or what is
+        not there of those that scripts use most.
+        """
+        if self._are_modifiers(owners):
+            self._tell_of_modifiers(member.name, recognition)
+        else:
+            self._tell_absent(member, recognition)
+
+    def _tell_of_modifiers(self, name: str, recognition: Recognition) -> None:
+        recognition.notes += (_IS_NONE.format(name=name, of=""), TAKES_NO_MODIFIER)
+        recognition.add(_MAKES_MODIFIERS, _IS_READ, "may be None")
 
     def _are_used(self, holders: list[SymbolEntry]) -> bool:
         weights = self._reader.weights([entry.path for entry in holders])

@@ -29,13 +29,19 @@ def is_like_a_node(name: str) -> bool:
     return _OWN.fullmatch(name) is not None and not name.endswith("Tree")
 
 
+def tree_of_family(name: str) -> str:
+    """The class of the trees of the family of nodes that a name belongs to: CompositorNodeTree; empty for none."""
+    own = _OWN.fullmatch(name)
+    return _TREES.get(own[1], f"{own[1]}Tree") if own else ""
+
+
 def nodes_meant(name: str, reader: BaseReader) -> list[str]:
     """The paths of the nodes that a name which none has may mean, the likeliest first: those of the trees of its
     family, by what it says behind the family, spelt or labelled so, or with a word more or less.
     """
     own = _OWN.fullmatch(name)
     family, said = (own[1], own[2]) if own else ("", name)
-    tree = _TREES.get(family, f"{family}Tree") if family else ""
+    tree = tree_of_family(name)
     leaves = [entry for entry in reader.descendants(NODE) if not any(reader.subclasses(entry.path))]
     names = {entry.path: _behind(entry.name) for entry in leaves}
     of_family = {one: path for path, one in names.items() if path.startswith(TYPES + family)}

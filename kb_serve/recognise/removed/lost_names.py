@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 _NAMED = 0.5  # fit of a class that a variable's name tells
 _FAR_LIKELIER = 1.3  # so much more than what has a name today must count what had it
 _USED = 10.0  # weight of a class that scripts use much
+_LAST_OF_ENGINE = "2.79"
 _HELD_BY = (TYPES, "bmesh.types.")
 _THEME = f"{TYPES}Theme"  # its hundreds of colours are called like everything else
 _DATA = f"{TYPES}Object.data"
@@ -148,7 +149,9 @@ class LostNames:
         if self._lists(readings, chain):
             return None
         least = max(today, default=0.0)
-        is_far_likelier = lost >= _USED and lost > _FAR_LIKELIER * least
+        # What went with the game engine, without a successor, is hardly meant today.
+        is_told = bool(removed.targets) or removed.last != _LAST_OF_ENGINE
+        is_far_likelier = is_told and lost >= _USED and lost > _FAR_LIKELIER * least
         return LostName(removed, 1) if is_far_likelier or (not today and self._took(removed, chain)) else None
 
     def _took(self, removed: RemovedSymbol, chain: Chain) -> bool:
@@ -173,7 +176,7 @@ class LostNames:
             return None
         owners = self._reader.weights([reading.symbols[0] for reading in readings if reading.complete])
         most = max(owners.values(), default=0.0)
-        return removed if removed.successors and lost and lost >= most else None
+        return removed if removed.targets and lost and lost >= most else None
 
     def _of_usual_class(self, chain: Chain) -> RemovedSymbol | None:
         """What one of the classes lost that a variable is usually of, where another has it: ``bone.select``."""

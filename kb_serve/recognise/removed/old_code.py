@@ -15,6 +15,7 @@ from kb_serve.recognise.resolving.call_texts import arguments, texts_in
 from kb_serve.recognise.resolving.chain_starts import ROOTS
 from kb_serve.recognise.resolving.chains import find_chains
 from kb_serve.recognise.resolving.variables import USUAL, usual_classes, variable_fit
+from simworlds.releases import version_key
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -93,6 +94,23 @@ class OldCode:
             or _old(chain, self._lost_names.reached(chain, readings))
             or (None if is_quoted else _old(chain, self._lost_names.likelier(chain, readings)))
         )
+
+    def beneath(self, chain: Chain, reading: ResolvedChain) -> RemovedSymbol | None:
+        """What a class once had by a name that leads to what a class above it gives all today: the ``width`` of a
+        mask's node, not that of the mask.
+        """
+        owner, _, name = reading.symbols[-1].rpartition(".")
+        calls = (step.text for step in chain.steps if step.kind == "call")
+        made = (
+            f"{TYPES}{text}" for call in calls for _, given in arguments(call) for text in texts_in(given)
+        )
+        below = (
+            cls
+            for cls in (*reading.symbols[:-1], *made)
+            if cls != owner and self._reader.descends(cls, owner)
+        )
+        lost = (self._removed.of_path(f"{cls}.{name}") for cls in below)
+        return next((removed for removed in lost if removed and removed.targets), None)
 
     def alike(self, chain: Chain, readings: Sequence[ResolvedChain]) -> RemovedSymbol | None:
         """What a chain of an unknown variable may name as well as what has the name today."""
@@ -322,7 +340,16 @@ class OldCode:
             owner for owner in owners if variable_fit(variable, owner.removeprefix(TYPES)) >= _LIKELY_FIT
         ]:
             return fitting
-        return owners if len(owners) <= _MANY_OWNERS or not variable or self._went_alike(paths) else []
+        if len(owners) <= _MANY_OWNERS or not variable or self._went_alike(paths):
+            return owners
+        latest = self._lost_last(name, owners)
+        return latest if len(latest) <= _MANY_OWNERS else []
+
+    def _lost_last(self, name: str, owners: Iterable[str]) -> list[str]:
+        """Those of some classes that had a member longest: who writes it remembers what was there last."""
+        spans = {owner: self._reader.removed(f"{owner}.{name}") for owner in owners}
+        last = {owner: version_key(span[1]) for owner, span in spans.items() if span and span[2]}
+        return [owner for owner, version in last.items() if version == max(last.values())]
 
     def _went_alike(self, paths: Iterable[str]) -> bool:
         """Whether the same took the place of members of several classes, as of all kinds of strips."""

@@ -13,10 +13,8 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 NODES_MODIFIER = f"{TYPES}NodesModifier"
-OF_NODES_MODIFIER = (
-    NODES_MODIFIER,
-    f"{TYPES}NodesModifierProperties",
-)  # what the inputs were, or are, asked of
+PROPERTIES = f"{TYPES}NodesModifierProperties"
+OF_NODES_MODIFIER = (NODES_MODIFIER, PROPERTIES)  # what the inputs were, or are, asked of
 PROPERTIES_OF_OPERATORS = f"{TYPES}OperatorProperties"
 _NEW_INPUT = f"{TYPES}NodeTreeInterface.new_socket"
 # How Blender identifies the inputs and outputs of a group, as keys of its modifier: by itself no other key looks so.
@@ -52,8 +50,9 @@ _AS_PROPERTIES = (
     "Inputs of a geometry-nodes modifier are attributes of `modifier.properties.inputs` since Blender 5.2, by the "
     "identifier of the group's input: `modifier.properties.inputs.Socket_2.value = 5.0`, or "
     '`getattr(modifier.properties.inputs, modifier.node_group.interface.items_tree["Size"].identifier).value = 5.0`, '
-    "then `obj.update_tag()`. An attribute is used instead of a value by `.type = 'ATTRIBUTE'` and "
-    '`.attribute_name = "name"` of the same; a menu takes the name of an entry. Brackets on the modifier, or on its '
+    'then `obj.update_tag()`; `.keyframe_insert("value", frame=1)` of the same keys it. An attribute is used '
+    "instead of a value by `.type = 'ATTRIBUTE'` and `.attribute_name = \"name\"`; a menu takes the name of an entry. "
+    "Brackets on the modifier, or on its "
     f"`properties`, raise TypeError. `{PROPERTIES_OF_MODIFIER}` is None until the modifier has a `node_group`."
 )
 _ATTRIBUTES = (
@@ -144,7 +143,8 @@ class CustomProperties:
         told = [
             "Inputs of a geometry-nodes modifier are set by the identifier of the group's input, not by its name: "
             f'`modifier[modifier.node_group.{items}["Size"].identifier] = 5.0`, then `obj.update_tag()`. '
-            "Another key makes a custom property that changes nothing."
+            "Another key makes a custom property that changes nothing. "
+            "`modifier.keyframe_insert(f'[\"{identifier}\"]', frame=1)` keys it."
         ]
         told.append(_ATTRIBUTES)
         if items.startswith("interface"):

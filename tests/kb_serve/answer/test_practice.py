@@ -814,6 +814,19 @@ def test_a_transparent_film_is_no_movie(kb: KnowledgeBase) -> None:
     assert "A film:" not in "\n".join(kb.query("render with transparent film and save a png").notes)
 
 
+@pytest.mark.parametrize(
+    "query",
+    ["links.new(a.outputs[0], h.inputs['Color'])", "NameError: name 'liquid_save_data_4' is not defined"],
+)
+def test_letters_and_digits_of_variables_ask_for_no_film(query: str, kb: KnowledgeBase) -> None:
+    assert "A film:" not in "\n".join(kb.query(query).notes)
+
+
+def test_it_is_told_when_a_modifier_is_none(kb: KnowledgeBase) -> None:
+    (note,) = kb.query("why does modifiers.new return None").notes
+    assert note.startswith("`obj.modifiers.new(…)` returns None, without an error")
+
+
 def test_advice_of_other_versions_is_not_given(reader: BaseReader, monkeypatch: pytest.MonkeyPatch) -> None:
     def told(minor: str) -> str:
         monkeypatch.setitem(reader.meta, "minor", minor)

@@ -6,11 +6,14 @@ import re
 from typing import TYPE_CHECKING
 
 import pytest
+from told_by_blender import told_by_blender
 
 from kb_serve.recognise.code.contexts import with_context
 from kb_serve.recognise.resolving.chains import find_chains
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from kb_serve.knowledge_base import KnowledgeBase
 
 
@@ -24,18 +27,18 @@ if TYPE_CHECKING:
         ("sequencer.delete", "bpy.context.workspace.sequencer_scene = scene"),
         (
             "sequencer.effect_strip_add",
-            "`bpy.context.workspace.sequencer_scene = scene`; `area = next(a for a in",
+            "`bpy.context.workspace.sequencer_scene = scene`; `areas = bpy.context.window.screen.areas`; `area =",
         ),
         ("mesh.subdivide", "mode_set(mode='EDIT')"),
         ("view3d.snap_cursor_to_center", "a.type == 'VIEW_3D'"),
         ("mesh.loop_select", "a.type == 'VIEW_3D'"),
         (
             "mesh.knife_tool",
-            "objects.active = ob`; `bpy.ops.object.mode_set(mode='EDIT')`; `area = next(a for a in",
+            "objects.active = ob`; `bpy.ops.object.mode_set(mode='EDIT')`; `areas = bpy.context.window.screen.areas`;",
         ),
         (
             "text.insert",
-            "'TEXT_EDITOR')`; `area.spaces.active.text = bpy.data.texts.new(\"name\")`; `region = next(",
+            "area.type = 'TEXT_EDITOR'`; `area.spaces.active.text = bpy.data.texts.new(\"name\")`; `region = next(",
         ),
         (
             "graph.smooth",
@@ -65,6 +68,36 @@ def test_a_failed_poll_says_what_helps(kb: KnowledgeBase, path: str, said: str) 
     message = f"RuntimeError: Operator bpy.ops.{path}.poll() failed, context is incorrect"
     (note,) = [note for note in kb.query(message).notes if "poll()" in note]
     assert said in note
+
+
+_RUN = """
+import json, re, sys
+import bpy
+told = []
+bpy.ops.wm.read_factory_settings()
+ob = bpy.context.object
+for note in json.load(open(sys.argv[-1])):
+    for line in re.findall("`(.+?)`", note[note.index("`areas = "):]):
+        exec(line)
+    told.append([area.type for area in bpy.context.window.screen.areas])
+open(sys.argv[-1], "w").write(json.dumps(told))
+"""
+
+
+def test_an_area_that_the_screen_lacks_is_made_in_blender(kb: KnowledgeBase, tmp_path: Path) -> None:
+    wanted = {
+        "clip.view_zoom_in": "CLIP_EDITOR",
+        "graph.view_all": "GRAPH_EDITOR",
+        "nla.view_all": "NLA_EDITOR",
+        "text.insert": "TEXT_EDITOR",
+        "view3d.snap_cursor_to_center": "VIEW_3D",
+    }
+    notes = [
+        kb.query(f"RuntimeError: Operator bpy.ops.{path}.poll() failed, context is incorrect").notes[0]
+        for path in wanted
+    ]
+    told = told_by_blender(_RUN, tmp_path, notes)
+    assert all(area in areas for area, areas in zip(wanted.values(), told, strict=True))
 
 
 def test_a_call_keeps_the_arguments_that_it_was_made_with(kb: KnowledgeBase) -> None:

@@ -47,6 +47,8 @@ T = "bpy.types."
         ("for s in seq.sequences_all: pass", "SequenceEditor.sequences_all"),
         ("strip.use_translation = True", "EffectSequence.use_translation"),
         ("tex.color_space = 'NONE'", "ShaderNodeTexImage.color_space"),
+        # … of several classes that had it the one that lost it last
+        ("m.shadow_method = 'NONE'", "Material.shadow_method"),
     ],
 )
 def test_what_is_gone_is_told_first(kb: KnowledgeBase, written: str, gone: str) -> None:
@@ -64,6 +66,7 @@ def test_what_is_gone_is_told_first(kb: KnowledgeBase, written: str, gone: str) 
         ("x.inputs['Roughness'].default_value = 1", 'ShaderNodeBsdfPrincipled.inputs["Roughness"]'),
         ("thing.show_edge_seams = True", "View3DOverlay.show_edge_seams"),  # which it moved to
         ("x.fcurves", "ActionChannelbag.fcurves"),
+        ("rgbc.mapping.curves[3]", "CurveMapping.curves"),  # the game engine's had no successor
         ("var.type = 'SINGLE_PROP'", "DriverVariable.type"),
         ("bag.fcurves.new('location')", "ActionChannelbagFCurves.new"),
     ],

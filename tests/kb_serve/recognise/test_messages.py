@@ -918,3 +918,62 @@ def test_the_old_mix_is_no_newer_one_where_the_code_makes_it(kb: KnowledgeBase) 
     line = "mix.inputs['Color1'].default_value = (1, 0, 0, 1)"
     assert "ShaderNodeMix`" in "\n".join(kb.query(line).notes)
     assert kb.query(f"mix = nodes.new('ShaderNodeMixRGB')\n{line}").notes == ()
+
+
+@pytest.mark.parametrize(
+    ("line", "path", "wanted"),
+    [
+        ("p.co = (i, 3, 0)", "SplinePoint.co", 4),
+        ("ns.points[0].co = (0, 3, 0)", "SplinePoint.co", 4),
+        ("light.color = (1, 0, 0, 1)", "Light.color", 3),
+    ],
+)
+def test_a_number_of_items_tells_which_property_of_a_name_is_set(
+    kb: KnowledgeBase, line: str, path: str, wanted: int
+) -> None:
+    given = line.count(",") + 1
+    counted = f"should contain {wanted} items, not {given}"
+    message = f"ValueError: bpy_struct: item.attr = val: sequences of dimension 0 {counted}"
+    answer = kb.query(f"{line}\n{message}")
+    assert answer.hits[0].id == f"bpy.types.{path}"
+    assert answer.notes[0] == f"`bpy.types.{path}` takes {wanted} numbers, not {given}."
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "lm.object = lat",
+        "lm = ob.modifiers.new('Lat', 'LATTICE')\n    lm.object = lat",
+        "x.vertex_group = 'g'",
+    ],
+)
+def test_a_modifier_that_an_object_does_not_take_is_none(kb: KnowledgeBase, code: str) -> None:
+    message = "AttributeError: 'NoneType' object has no attribute 'object'"
+    answer = kb.query(
+        f'Traceback (most recent call last):\n  File "a.py", line 9, in <module>\n    {code}\n{message}'
+    )
+    assert answer.hits[0].id == "bpy.types.ObjectModifiers.new"
+    assert "returns None, without an error" in answer.notes[1]
+
+
+def test_objects_take_no_modifiers_of_others_in_blender() -> None:
+    bpy = pytest.importorskip("bpy")
+    scene = bpy.context.scene
+    takes = {
+        "light": (bpy.data.lights.new("l", "POINT"), "LATTICE"),
+        "empty": (None, "LATTICE"),
+        "pencil": (bpy.data.grease_pencils.new("g"), "LATTICE"),
+        "mesh": (bpy.data.meshes.new("m"), "GREASE_PENCIL_LATTICE"),
+    }
+    for name, (data, kind) in takes.items():
+        ob = bpy.data.objects.new(name, data)
+        scene.collection.objects.link(ob)
+        assert ob.modifiers.new("m", kind) is None, name
+
+
+def test_a_type_of_nodes_that_no_tree_takes_leads_to_the_one_of_its_name(kb: KnowledgeBase) -> None:
+    message = kb.query("RuntimeError: Error: Node type CompositorNodeGamma undefined")
+    line = kb.query("nodes.new('CompositorNodeGamma')")
+    for answer in (message, line):
+        assert "a class of nodes that no tree takes" in answer.notes[0]
+        assert "Use `bpy.types.ShaderNodeGamma`." in answer.notes[0]

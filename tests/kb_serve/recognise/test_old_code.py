@@ -306,3 +306,15 @@ def test_where_something_is_to_be_used_instead_nothing_is_not_said(
 @pytest.mark.parametrize("word", ["pipes", "chunk"])
 def test_plain_words_that_modules_were_called_by_mean_no_modules(kb: KnowledgeBase, word: str) -> None:
     assert not any("Python" in note for note in kb.query(word).notes)
+
+
+@pytest.mark.parametrize(
+    "code", ["mask = nodes.new('CompositorNodeEllipseMask')\nmask.width = 0.8", "ellipse_mask.width = 0.8"]
+)
+def test_what_all_nodes_have_by_a_name_is_not_what_one_had(kb: KnowledgeBase, code: str) -> None:
+    answer = kb.query(code)
+    size = f'{T}CompositorNodeEllipseMask.inputs["Size"]'
+    assert [hit.id for hit in answer.hits[:2]] == [size, f"{T}Node.width"]
+    (note,) = answer.notes
+    assert note.startswith(f"`{T}Node.width` is another thing than")
+    assert note.endswith(f"that is `{size}` now.")

@@ -47,6 +47,8 @@ def test_inputs_of_a_geometry_nodes_modifier_are_set_by_identifier(kb: Knowledge
         'm["Socket_2"] = 2.0',
         'obj.modifiers["GeometryNodes"]["Input_2"] = 5.0',
         'm.properties["Socket_2"] = 2.0',
+        "getattr(mod.properties.inputs, item.identifier).keyframe_insert('value', frame=1)",
+        "AttributeError: 'NodesModifierProperties' object has no attribute 'Socket_1'",
         "how do I set a geometry nodes modifier input value from Python",
         "TypeError: bpy_struct[key] = val: id properties not supported for this type",
         "TypeError: this type doesn't support IDProperties",
@@ -57,6 +59,7 @@ def test_inputs_that_are_properties_are_told_as_such(query: str) -> None:
         notes = "\n".join(kb.query(query).notes)
     assert "`modifier.properties.inputs.Socket_2.value" in notes
     assert "geometry-nodes modifiers take" not in notes
+    assert "has no" not in notes
 
 
 @pytest.mark.parametrize(
