@@ -227,6 +227,11 @@ _SIGNED = (
     "The scale is negative on all axes where the matrix mirrors (`matrix.is_negative`), whichever axis it mirrors: "
     "`Matrix.Diagonal((-1, 2, 3, 1))` gives (-1, -2, -3)."
 )
+_WINDOWED = "It crashes a Blender without a window (`--background`, or `import bpy` in another Python)."
+_RULED = (
+    "In a script: `with bpy.context.temp_override(particle_settings=psys.settings): bpy.ops.boid.rule_add("
+    "type='FOLLOW_LEADER')`. Without it nothing is added, and {'CANCELLED'} is all that is returned."
+)
 _FACES = "The lists hold the faces themselves (`BMFace`), not their indices."
 
 ADVICE: tuple[Advice, ...] = (
@@ -257,6 +262,12 @@ ADVICE: tuple[Advice, ...] = (
     Advice(_CRASHING_CLASS, frozenset({"bpy.utils.register_class"}), since=(5, 1)),
     Advice(_SIGNED, frozenset({"mathutils.Matrix.to_scale", "mathutils.Matrix.decompose"})),
     Advice(_FACES, frozenset({"bpy_extras.bmesh_utils.bmesh_linked_uv_islands"})),
+    Advice(
+        _WINDOWED,
+        _of("WindowManager.popover", "WindowManager.popup_menu")
+        | {"bpy.ops.wm.call_menu", "bpy.ops.wm.call_panel"},
+    ),
+    Advice(_RULED, frozenset({"bpy.ops.boid.rule_add"})),
     Advice(_NO_KEY, _of("RetimingKeys.add")),
     Advice(
         _NO_RETIMING, _of("RetimingKey", "RetimingKey.timeline_frame", "RetimingKeys", "RetimingKeys.add")
@@ -281,6 +292,7 @@ ADVICE: tuple[Advice, ...] = (
             _stems("frame frames frame_set"),
             _stems("after at get jump not only position read result skip step through without"),
         ),
+        unless=_stems("strip split sequencer"),
     ),
     Advice(
         _STEPPED,

@@ -55,6 +55,10 @@ CHANGED_BY = {
         f"{T}GreasePencilFrames.move",
         "`layer.frames.move(1, 5)` moves a frame to another number, `layer.frames.copy(1, 5)` copies it.",
     ),
+    "_bpy_internal.grease_pencil.stroke.GreasePencilStroke.curve_type": (
+        f"{T}GreasePencilDrawing.set_types",
+        "`drawing.set_types(type='POLY', indices=[0])` sets it.",
+    ),
     f"{T}Object.mode": (
         "bpy.ops.object.mode_set",
         "Make the object active, then `bpy.ops.object.mode_set(mode='EDIT')`.",

@@ -63,6 +63,7 @@ READ_ONLY = re.compile(
     r"attribute \"(?P<name>\w+)\" from \"(?P<owner>\w+)\" is read-only"
     r"|bpy_prop \"(?P<array_owner>\w+)\.(?P<array>\w+)\" is read-only"
     r"|Context property \"(?P<context>\w+)\" is read-only"
+    r"|property '(?P<of_python>\w+)' of '(?P<python_owner>\w+)' object has no setter"
 )
 FREED = re.compile(r"\b(?:StructRNA|(?P<module>BMesh) data) of type (?P<type>\w+) has been removed")
 PRODUCT = re.compile(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.lines import locked_text
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.changed_by import changed_by
@@ -25,8 +24,9 @@ class AssignedProperties:
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds the property, and what changes it, where that is known."""
         for match in forms.first_matches(forms.READ_ONLY, query):
-            owner = "bpy.context" if match["context"] else TYPES + (match["owner"] or match["array_owner"])
-            name = match["context"] or match["name"] or match["array"]
+            of_class = match["owner"] or match["array_owner"] or match["python_owner"]
+            owner = "bpy.context" if match["context"] else of_class
+            name = match["context"] or match["name"] or match["array"] or match["of_python"]
             if entry := self._symbols.member(owner, name):
                 self._read_only(entry.path, recognition)
         for match in forms.first_matches(forms.WRONG_TYPE, query):

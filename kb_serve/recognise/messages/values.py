@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 
 _FEW = 3
+_NAMED = 0.985  # how sure a function is that a message names
 _MOST_OWNERS = 8  # that are compared
 _NO_ITEM = "`{name}` is not an item of this enum; closest: {similar}."
 _LABELLED = "`{name}` is not an item of this enum; of that label: {items}."
@@ -47,7 +48,12 @@ class Values:
         self._symbols = symbols
 
     def recognise(self, query: str, recognition: Recognition) -> None:
-        """Adds the owners of the enumeration, and what is closest to the value, or became of it."""
+        """Adds the function that a message names with its class, whatever the code beside it may be of; the owners of
+        the enumeration, and what is closest to the value, or became of it.
+        """
+        for match in forms.first_matches(forms.IN_FUNCTION, query):
+            if "." in match["method"] and (named := self._symbols.function(match["method"])):
+                recognition.add(named, _NAMED, "error message")
         for match in forms.first_matches(forms.BAD_ENUM, query):
             items = re.findall(r"'([^']+)'", match["items"])
             function = forms.IN_FUNCTION.search(query)

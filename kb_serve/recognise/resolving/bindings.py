@@ -9,11 +9,13 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.symbols.flags import NODE_FAMILIES
 from kb_serve.recognise.resolving.chains import MAX_STEPS, Chain, ChainStep, sockets_in
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+_OF_NODE = re.compile(rf"""\s*["'](?:{"|".join(NODE_FAMILIES)})\w+["']""")
 _ELEMENT = ChainStep("index", "0")  # any element of what is iterated over
 _MOST_TARGETS = 5  # words of ``for a, b in``
 _SEQUENCE = re.compile(r"(?:(?:enumerate|list|reversed|sorted|tuple)\()*")  # in which the same elements are
@@ -49,7 +51,7 @@ def with_bindings(text: str, chains: Sequence[Chain]) -> list[Chain]:
         is_whole = own.steps and not _GOES_ON.match(text, end)
         bound = rest
         if is_whole and is_assigned:
-            bound[found[-1].root] = _Binding(own, place)
+            bound[found[-1].root] = _Binding(_as_made(own), place)
         elif is_whole and (name := _iterated(found)) and _SEQUENCE.fullmatch(gap):
             element = replace(own, steps=(*own.steps, _ELEMENT))
             elements[name] = bound[name] = _Binding(element, place)
@@ -62,6 +64,14 @@ def with_bindings(text: str, chains: Sequence[Chain]) -> list[Chain]:
     for place in leading:
         found[place] = replace(found[place], leads_on=True)
     return [*found, *sockets]
+
+
+def _as_made(chain: Chain) -> Chain:
+    """What is assigned; a call of the script's own with the type of a node, ``add("ShaderNodeMath")``, as the node."""
+    first = chain.steps[0] if chain.steps else None
+    if first is None or first.kind != "call" or not _OF_NODE.match(first.text):
+        return chain
+    return replace(chain, root="nodes", steps=(ChainStep("attr", "new"), *chain.steps))
 
 
 def _without(found: Sequence[Chain], bound: dict[str, _Binding]) -> dict[str, _Binding]:

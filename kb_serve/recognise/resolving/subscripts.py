@@ -45,6 +45,10 @@ _REGISTERED = (
     "A property that is registered by `bpy.props` is not found in brackets since Blender 5.0: it is the attribute "
     '`.{name}`, and what is stored of it `.bl_system_properties_get()["{name}"]`, once it was set.'
 )
+_LIMITED = (
+    '`["_RNA_UI"]` sets no limits since Blender 3.0: `owner.id_properties_ui("name").update(min=0.0, max=2.0)` does, '
+    'once `owner["name"]` was set.'
+)
 PROPERTIES_OF_MODIFIER = f"{NODES_MODIFIER}.properties"  # since Blender 5.2
 _AS_PROPERTIES = (
     "Inputs of a geometry-nodes modifier are attributes of `modifier.properties.inputs` since Blender 5.2, by the "
@@ -116,6 +120,8 @@ class CustomProperties:
         """A sentence on ``x["name"]``, where ``x`` is of a class that takes custom properties."""
         if cls in OF_NODES_MODIFIER:
             return self.on_inputs()
+        if name == "_RNA_UI":
+            return _LIMITED
         said = (
             f'`["{name}"]` is a custom property of `{cls}`, not one of its attributes: assigning makes it, reading '
             f'raises KeyError until then; `.get("{name}")` returns None instead.'

@@ -12,6 +12,7 @@ import wave
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from told_by_blender import told_by_blender
 
 from kb_serve.answer.practice import Practice
 
@@ -836,3 +837,46 @@ def test_advice_of_other_versions_is_not_given(reader: BaseReader, monkeypatch: 
     assert "crashes Blender" not in told("5.0")
     assert "GP_NOISE" in told("4.2")
     assert "GP_NOISE" not in told("4.3")
+
+
+@pytest.mark.parametrize(
+    ("path", "call"),
+    [
+        (
+            f"{TYPES}WindowManager.popup_menu",
+            "bpy.context.window_manager.popup_menu(lambda menu, context: None)",
+        ),
+        (f"{TYPES}WindowManager.popover", "bpy.context.window_manager.popover(lambda panel, context: None)"),
+        ("bpy.ops.wm.call_menu", "bpy.ops.wm.call_menu(name='VIEW3D_MT_add')"),
+        ("bpy.ops.wm.call_panel", "bpy.ops.wm.call_panel(name='OBJECT_PT_transform')"),
+    ],
+)
+def test_what_pops_up_crashes_a_blender_without_a_window(
+    path: str, call: str, reader: BaseReader, tmp_path: Path
+) -> None:
+    assert "crashes a Blender without a window" in said(reader, path)
+    with pytest.raises(subprocess.CalledProcessError) as crashed:
+        told_by_blender(f"import bpy\n{call}", tmp_path)
+    assert crashed.value.returncode < 0
+
+
+def test_a_boid_gets_a_rule_by_the_settings_in_the_context(reader: BaseReader, tmp_path: Path) -> None:
+    (line,) = re.findall("`(with .+?)`", said(reader, "bpy.ops.boid.rule_add"))
+    script = f"""
+import json, sys
+import bpy
+bpy.ops.wm.read_factory_settings()
+bpy.ops.object.particle_system_add()
+psys = bpy.context.object.particle_systems[0]
+psys.settings.physics_type = 'BOIDS'
+rules = psys.settings.boids.states[0].rules
+counts = [len(rules)]
+bpy.ops.boid.rule_add(type='FOLLOW_LEADER')
+counts.append(len(rules))
+{line}
+counts.append(len(rules))
+open(sys.argv[-1], "w").write(json.dumps(counts))
+"""
+    before, without, within = told_by_blender(script, tmp_path)
+    assert without == before
+    assert within == before + 1

@@ -28,6 +28,7 @@ def bound(text: str) -> list[str]:
         ("x = a.b\nx.c", "a.b.c"), ("x = a.b x.c", "a.b.c"), ("x = a.b\ny = x.c\ny.d", "a.b.c.d"),
         ("x = a.b; x = x.c; x.d", "a.b.c.d"), ("for x in a.b:\n    x.c", "a.b.[].c"),
         ("for i, x in enumerate(a.b): x.c", "a.b.[].c"), ("with a.b as x: x.c", "a.b.c"),
+        ("x = N('ShaderNodeMath')\nx.c", "nodes.new.[].c"), ("x = N('Math')\nx.c", "N.[].c"),
         ('File "s.py", line 2\n    x = a.b\n    x.c', "a.b.c"),
     ],
 )  # fmt: skip

@@ -40,6 +40,11 @@ _TRIED = {
         "layer.frames.move(1, 5); layer.frames.copy(5, 9)",
         "[frame.frame_number for frame in layer.frames] == [5, 9]",
     ),
+    "_bpy_internal.grease_pencil.stroke.GreasePencilStroke.curve_type": (
+        "drawn.strokes[0].curve_type = 'POLY'",
+        "drawn.set_types(type='BEZIER', indices=[0])",
+        "drawn.strokes[0].curve_type == 2",
+    ),
     "Object.mode": ("ob.mode = 'EDIT'", "bpy.ops.object.mode_set(mode='EDIT')", "ob.mode == 'EDIT'"),
     "Object.type": (
         "text.type = 'MESH'",
@@ -177,7 +182,8 @@ for name, (refused, change, test) in json.load(open(sys.argv[-1])).items():
     bone, posed = armature.bones["Bone"], rig.pose.bones["Bone"]
     image = bpy.data.images.new("i", 8, 8)
     layer = bpy.data.grease_pencils.new("g").layers.new("l")
-    layer.frames.new(1)
+    drawn = layer.frames.new(1).drawing
+    drawn.add_strokes([3])
     try:
         exec(refused)
         message = ""

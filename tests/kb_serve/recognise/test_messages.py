@@ -977,3 +977,17 @@ def test_a_type_of_nodes_that_no_tree_takes_leads_to_the_one_of_its_name(kb: Kno
     for answer in (message, line):
         assert "a class of nodes that no tree takes" in answer.notes[0]
         assert "Use `bpy.types.ShaderNodeGamma`." in answer.notes[0]
+
+
+def test_what_python_alone_lacks_a_setter_for_says_what_changes_it(kb: KnowledgeBase) -> None:
+    answer = kb.query("AttributeError: property 'curve_type' of 'GreasePencilStroke' object has no setter")
+    assert [hit.id.rpartition(".")[2] for hit in answer.hits[:2]] == ["curve_type", "set_types"]
+    assert "is read-only" in answer.notes[0]
+
+
+def test_the_function_that_a_message_names_comes_before_the_codes(kb: KnowledgeBase) -> None:
+    message = (
+        'NlaStrips.new(): error with argument 2, "start" -  Function.start expected an int type, not float'
+    )
+    answer = kb.query(f"    tr2.strips.new('spin', 10.5, a2)\nTypeError: {message}")
+    assert answer.hits[0].id == "bpy.types.NlaStrips.new"

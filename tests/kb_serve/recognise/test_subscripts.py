@@ -186,3 +186,8 @@ def test_a_socket_is_set_by_its_value(kb: KnowledgeBase, query: str) -> None:
 )
 def test_the_value_of_a_socket_is_left_alone(kb: KnowledgeBase, query: str) -> None:
     assert not [note for note in kb.query(query).notes if "is its `default_value`" in note]
+
+
+def test_limits_of_custom_properties_are_not_those_of_old(kb: KnowledgeBase) -> None:
+    (note,) = kb.query("ob['_RNA_UI'] = {'size': {'min': 0.0}}").notes
+    assert 'id_properties_ui("name").update(' in note
