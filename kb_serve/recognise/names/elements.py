@@ -82,8 +82,31 @@ _LAYER_COLLECTION_ADDED = Elsewhere(
     f"{T}CollectionChildren.link",
     "A layer shows the scene's collections: `scene.collection.children.link(collection)` adds one.",
 )
+_PLANE_TRACK_ADDED = Elsewhere(
+    "bpy.ops.clip.create_plane_track",
+    "In a clip editor `bpy.ops.clip.create_plane_track()` makes one of four or more tracks that are selected.",
+)
 # Collection → where elements are added.
 ADDED_BY = {
+    f"{T}BoidState.rules": Elsewhere(
+        "bpy.ops.boid.rule_add",
+        "An operator adds one: `with bpy.context.temp_override(particle_settings=psys.settings): "
+        "bpy.ops.boid.rule_add(type='FOLLOW_LEADER')`.",
+    ),
+    f"{T}DynamicPaintCanvasSettings.canvas_surfaces": Elsewhere(
+        "bpy.ops.dpaint.surface_slot_add",
+        "An operator adds one to the canvas of the active object: `bpy.ops.dpaint.surface_slot_add()`.",
+    ),
+    f"{T}MovieTracking.plane_tracks": _PLANE_TRACK_ADDED,
+    f"{T}MovieTrackingObject.plane_tracks": _PLANE_TRACK_ADDED,
+    f"{T}MovieTrackingStabilization.tracks": Elsewhere(
+        "bpy.ops.clip.stabilize_2d_add",
+        "In a clip editor `bpy.ops.clip.stabilize_2d_add()` adds the tracks that are selected.",
+    ),
+    f"{T}ParticleSystem.targets": Elsewhere(
+        "bpy.ops.particle.new_target",
+        "An operator adds one: `with bpy.context.temp_override(particle_system=psys): bpy.ops.particle.new_target()`.",
+    ),
     f"{T}Object.material_slots": Elsewhere(
         f"{T}IDMaterials.append",
         "The object's data has the materials: `obj.data.materials.append(material)` adds a slot with one.",

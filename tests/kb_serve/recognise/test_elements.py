@@ -16,6 +16,37 @@ if TYPE_CHECKING:
 
 # Collection → (what it lacks, statements that add elements; their count before and after), then the same for removing.
 _ADDED = {
+    "BoidState.rules": (
+        "psys.settings.boids.states[0].rules",
+        "with bpy.context.temp_override(particle_settings=psys.settings): "
+        "bpy.ops.boid.rule_add(type='FOLLOW_LEADER')",
+        1,
+    ),
+    "DynamicPaintCanvasSettings.canvas_surfaces": (
+        "canvas.canvas_surfaces",
+        "bpy.context.view_layer.objects.active = ob; bpy.ops.dpaint.surface_slot_add()",
+        1,
+    ),
+    "MovieTracking.plane_tracks": (
+        "clip.tracking.plane_tracks",
+        "in_clip_editor(bpy.ops.clip.create_plane_track)",
+        1,
+    ),
+    "MovieTrackingObject.plane_tracks": (
+        "clip.tracking.objects[0].plane_tracks",
+        "in_clip_editor(bpy.ops.clip.create_plane_track)",
+        1,
+    ),
+    "MovieTrackingStabilization.tracks": (
+        "clip.tracking.stabilization.tracks",
+        "in_clip_editor(bpy.ops.clip.stabilize_2d_add)",
+        4,
+    ),
+    "ParticleSystem.targets": (
+        "psys.targets",
+        "with bpy.context.temp_override(particle_system=psys): bpy.ops.particle.new_target()",
+        1,
+    ),
     "Object.material_slots": ("ob.material_slots", "ob.data.materials.append(material)", 1),
     "Key.key_blocks": ("mesh.shape_keys.key_blocks", 'ob.shape_key_add(name="Key")', 1),
     "BlendData.shape_keys": ("bpy.data.shape_keys", 'other.shape_key_add(name="Key")', 1),
@@ -89,7 +120,7 @@ _REMOVED = {
     "Mesh.loops": ("other.data.loops", _LOST, -3),
 }
 _RUN = """
-import json, sys
+import json, os, sys
 import bpy
 
 def in_edit_mode():
@@ -115,6 +146,25 @@ def remove_slots():
     assert [slot.material for slot in ob.material_slots] == [None]
     ob.data.materials.clear()
 
+def tracked(folder):
+    image = bpy.data.images.new("i", 8, 8)
+    image.filepath_raw, image.file_format = folder + "/i.png", "PNG"
+    image.save()
+    made = bpy.data.movieclips.load(image.filepath_raw)
+    for number in range(4):
+        track = made.tracking.tracks.new(name="t", frame=1)
+        track.markers[0].co = 0.2 + 0.6 * (number % 2), 0.2 + 0.6 * (number // 2)
+        track.select = True
+    return made
+
+def in_clip_editor(operator):
+    area = bpy.context.window.screen.areas[0]
+    area.type = "CLIP_EDITOR"
+    area.spaces.active.clip = clip
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    with bpy.context.temp_override(area=area, region=region):
+        operator()
+
 counts = []
 for collection, change in json.load(open(sys.argv[-1])):
     bpy.ops.wm.read_factory_settings()
@@ -133,7 +183,13 @@ for collection, change in json.load(open(sys.argv[-1])):
         made.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
         return made
     other, dusty, weighted = (linked(name, triangle()) for name in ("Other", "Dusty", "Weighted"))
-    dusty.modifiers.new("Dust", "PARTICLE_SYSTEM")
+    psys = dusty.modifiers.new("Dust", "PARTICLE_SYSTEM").particle_system
+    psys.settings.physics_type = "BOIDS"
+    bpy.context.view_layer.objects.active = ob
+    ob.modifiers.new("Canvas", "DYNAMIC_PAINT")
+    bpy.ops.dpaint.type_toggle(type="CANVAS")
+    canvas = ob.modifiers["Canvas"].canvas_settings
+    clip = tracked(os.path.dirname(sys.argv[-1]))
     weighted.vertex_groups.new(name="Group").add([0], 1.0, "REPLACE")
     new = bpy.data.objects.new("New", None)
     node_tree = bpy.data.node_groups.new("n", "ShaderNodeTree")
