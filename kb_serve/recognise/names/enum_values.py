@@ -167,11 +167,14 @@ class EnumValues:
         return next((item.where for item in self._items(owner) if item.identifier == value), None)
 
     def labelled(self, owner: str, value: str) -> list[str]:
-        """The items whose labels have all words of a value, those with the fewest others first: SUBSURF, which is
-        labelled Subdivision Surface, of ``SUBDIVISION``.
+        """The item whose label a value is, NEGATIVE_Z of ``-Z``; else those whose labels have all its words, those
+        with the fewest others first: SUBSURF, which is labelled Subdivision Surface, of ``SUBDIVISION``.
         """
+        items = self._items(owner)
+        if exact := [item.identifier for item in items if item.name.casefold() == value.casefold()]:
+            return exact
         said = set(terms(value))
-        labels = {item.identifier: set(terms(item.name)) for item in self._items(owner)}
+        labels = {item.identifier: set(terms(item.name)) for item in items}
         having = [identifier for identifier, label in labels.items() if said and said <= label]
         return sorted(having, key=lambda identifier: len(labels[identifier]))
 
