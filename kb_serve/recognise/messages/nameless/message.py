@@ -21,4 +21,9 @@ class NamelessMessage:
 
     def is_in(self, query: str) -> bool:
         """Whether a query holds the message."""
-        return all(part in query for part in self.parts) and not any(part in query for part in self.without)
+        # The first by itself, as it decides nearly always.
+        return (
+            self.parts[0] in query
+            and all(part in query for part in self.parts)
+            and not any(part in query for part in self.without)
+        )
