@@ -21,9 +21,4 @@ class NamelessMessage:
 
     def is_in(self, query: str) -> bool:
         """Whether a query holds the message."""
-        # The first by itself, as it decides nearly always.
-        return (
-            self.parts[0] in query
-            and all(part in query for part in self.parts)
-            and not any(part in query for part in self.without)
-        )
+        return all(part in query for part in self.parts) and not any(part in query for part in self.without)
