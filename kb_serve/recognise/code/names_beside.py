@@ -116,6 +116,8 @@ class NamesBeside:
         self._reader.entry.load(paths)
         named = map(self._reader.entry, paths)
         classes = [entry for entry in named if entry and entry.kind == "class"]
+        if not classes:
+            return
         # ``mass of ClothSettings``
         assigned = {chain.root for chain in chains if chain.assigned and not chain.steps}
         before = {
