@@ -83,8 +83,7 @@ class LooseNames:
         for rank, path in enumerate(list(best.values())[:_FEW]):
             recognition.add(path, 0.84 - 0.01 * rank, SIMILAR)
         is_name = "_" in name and not chain.assigned and not self._reader.by_key(key(name))
-        is_name = is_name and not self._reader.is_written(name)
-        if best or is_name:
+        if best or (is_name and not self._reader.is_written(name)):
             recognition.missing.append(MissingName(name))
 
     def _likeliest_owners(self, rows: list[SymbolEntry], prose: set[str]) -> list[SymbolEntry]:
