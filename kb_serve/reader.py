@@ -394,7 +394,7 @@ class BaseReader:
     def collections_with(self, cls: str) -> list[SymbolEntry]:
         """The properties that are collections of a class, given by its name."""
         sql = f"""SELECT {_ENTRY} FROM symbols
-            WHERE target = ? AND kind = 'property' AND type = 'collection' ORDER BY path"""
+            WHERE target = ? AND target != '' AND kind = 'property' AND type = 'collection' ORDER BY path"""
         return [SymbolEntry._make(row) for row in self.rows(sql, cls)]
 
     def is_of_collection(self, cls: str) -> bool:
