@@ -27,6 +27,10 @@ _Value = TypeVar("_Value")
 _Shared = TypeVar("_Shared")
 
 EXTEND = "__extend__"  # the identifier of the socket at which a node gets more
+# As numbers: a test of a flag takes a microsecond, and answers make many.
+_READ_ONLY, _DEPRECATED, _UNSEEN, _GIVEN, _CUT = (
+    int(mark) for mark in (Mark.READ_ONLY, Mark.DEPRECATED, Mark.UNSEEN, Mark.GIVEN, Mark.CUT)
+)
 PROPERTIES = "bpy.props."  # whose functions scripts import by name
 UNLIMITED = float("inf")
 
@@ -58,27 +62,27 @@ class SymbolEntry(NamedTuple):
     @property
     def is_read_only(self) -> bool:
         """Whether it cannot be assigned."""
-        return bool(self.marks & Mark.READ_ONLY)
+        return bool(self.marks & _READ_ONLY)
 
     @property
     def is_deprecated(self) -> bool:
         """Whether Blender calls it deprecated."""
-        return bool(self.marks & Mark.DEPRECATED)
+        return bool(self.marks & _DEPRECATED)
 
     @property
     def is_unseen(self) -> bool:
         """Whether its default is RNA's alone: no new instance was compared."""
-        return bool(self.marks & Mark.UNSEEN)
+        return bool(self.marks & _UNSEEN)
 
     @property
     def is_given(self) -> bool:
         """Whether it is a pointer that is None on all new things, and that an assignment alone fills."""
-        return bool(self.marks & Mark.GIVEN)
+        return bool(self.marks & _GIVEN)
 
     @property
     def may_have_more(self) -> bool:
         """Whether its line does not tell all values that can be given to it."""
-        return bool(self.marks & Mark.CUT)
+        return bool(self.marks & _CUT)
 
 
 class PageEntry(NamedTuple):
@@ -390,7 +394,7 @@ class BaseReader:
     def collections_with(self, cls: str) -> list[SymbolEntry]:
         """The properties that are collections of a class, given by its name."""
         sql = f"""SELECT {_ENTRY} FROM symbols
-            WHERE target = ? AND kind = 'property' AND type = 'collection' ORDER BY path"""
+            WHERE target = ? AND target != '' AND kind = 'property' AND type = 'collection' ORDER BY path"""
         return [SymbolEntry._make(row) for row in self.rows(sql, cls)]
 
     def is_of_collection(self, cls: str) -> bool:
@@ -563,6 +567,12 @@ class BaseReader:
     def symbols_of_page(self, slug: str) -> list[str]:
         """The symbols that a page explains, by Blender's own table."""
         return [row[0] for row in self.rows("SELECT symbol FROM explained WHERE slug = ?", slug)]
+
+    @cached_property
+    def deprecated_properties(self) -> frozenset[str]:
+        """The paths of the properties that Blender calls deprecated: dozens, about which every answer asks."""
+        sql = "SELECT path FROM symbols WHERE kind = 'property' AND marks & ?"
+        return frozenset(path for (path,) in self.rows(sql, _DEPRECATED))
 
     @cached_property
     def data_classes(self) -> list[tuple[str, str]]:

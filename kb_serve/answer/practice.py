@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import stem, words
+from kb_build.index.analysis import stems_of
 from kb_serve.answer.advice import ADVICE
 from kb_serve.recognise.resolving.subscripts import NODES_MODIFIER, CustomProperties
 from simworlds.releases import version_key
@@ -31,12 +31,13 @@ class Practice:
 
         ``is_named``: the question has its name, and was not only found to be like it.
         """
-        said = frozenset(map(stem, words(question)))
+        said = stems_of(question)
         for advice in self._of_version:
             is_about = is_named or not advice.about or not advice.about.isdisjoint(said)
             is_asked = not advice.asked or not advice.asked.isdisjoint(said)
-            if (self._is_on(advice, identifier) and is_about and is_asked) or self._is_told_anyway(
-                advice, said
+            # What a question says first: that soon tells most of it.
+            if (is_about and is_asked and self._is_on(advice, identifier)) or (
+                advice.wherever and self._is_told_anyway(advice, said)
             ):
                 yield advice.text
         if identifier == _TOGGLES_ATTRIBUTE and (text := self._custom.on_attributes()):
@@ -57,7 +58,7 @@ class Practice:
 
     def _is_told_anyway(self, advice: Advice, said: frozenset[str]) -> bool:
         """Whether a question has a word of each group by which advice is told of any symbol."""
-        is_asked = bool(advice.wherever) and not any(group.isdisjoint(said) for group in advice.wherever)
+        is_asked = not any(group.isdisjoint(said) for group in advice.wherever)
         is_asked = is_asked and advice.unless.isdisjoint(said)
         return is_asked and (not advice.needs or self._reader.entry(advice.needs) is not None)
 

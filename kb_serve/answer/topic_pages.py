@@ -65,6 +65,7 @@ CHAPTERS = {
     "shader": "render/shader_nodes/",
 }
 _MAX_WORDS = 4
+_OF_CODE = frozenset("._()[]=/")  # what has one of these is no title in plain words
 # What simulations are called by what they are of, and what other programs call the same, by topic keys; and words for
 # what else is done with what a word stands for.
 _SIMULATED = {"fire": "fluid", "smoke": "fluid"}
@@ -119,6 +120,8 @@ class TopicPages:
             chapter = next(chapter for word, chapter in CHAPTERS.items() if word in place.lower())
             if slug := self._called(node, chapter):
                 return slug
+        if len(plain.split()) > _MAX_WORDS:  # then both are looked up, as they stand
+            self._reader.by_key.load(map(topic_key, (plain, plain.rpartition(" ")[0])))
         return (
             self._called(plain)
             or self._called(made)
@@ -156,7 +159,8 @@ class TopicPages:
         mean several things.
         """
         spoken = plain.lower().split()
-        words = [word for word in spoken if word not in _AIMS] if len(spoken) <= _EVERYDAY_WORDS else []
+        may_be = len(spoken) <= _EVERYDAY_WORDS and _OF_CODE.isdisjoint(plain)
+        words = [word for word in spoken if word not in _AIMS] if may_be else []
         if title := _ALSO_CALLED.get(topic_key(plain)):
             return self._called(title)
         if len(words) == 1 and words[0] in _SIMULATED:
@@ -209,7 +213,7 @@ class TopicPages:
 
     def _called(self, plain: str, chapter: str = "") -> str:
         """The page of a topic that is called so, without more words; of a chapter alone, if one is given."""
-        if not key(plain) or any(char in plain for char in "._()[]=/"):
+        if not key(plain) or not _OF_CODE.isdisjoint(plain):
             return ""
         if len(plain.split()) > _MAX_WORDS:
             return self._exactly(plain)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate, pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -52,16 +53,18 @@ class StemPostings:
     """The documents and phrases that have a stem, and for each how much it says of it: of documents, BM25's saturated
     frequency; of phrases, the share that a unit of idf is of all that the phrase tells.
 
-    ``units``: how many of them are units; ``idf``: how much the stem tells, 0 if no unit has it.
+    ``units`` and ``documents``: how many of them are those, which stand before the phrases; ``idf``: how much the stem
+    tells, 0 if no unit has it.
     """
 
     numbers: NDArray[np.uint32]
     saturated: Scores
     units: int
+    documents: int
     idf: float
 
 
-_NOWHERE = StemPostings(np.zeros(0, np.uint32), np.zeros(0, np.float32), 0, 0.0)
+_NOWHERE = StemPostings(np.zeros(0, np.uint32), np.zeros(0, np.float32), 0, 0, 0.0)
 
 
 class InvertedIndex:
@@ -178,16 +181,25 @@ class InvertedIndex:
             raise self._reader.damaged(error) from error
         weight = weights.astype(np.float32)
         units, documents, end = self.ends
-        if not (len(numbers) == len(weight) and _within(numbers, 0, end) and np.isfinite(weight).all()):
+        starts = [0, *accumulate(lengths)]
+        sound = len(numbers) == len(weight) and _within(numbers, 0, end) and np.isfinite(weight).all()
+        if not (sound and _ascend(numbers, starts)):
             raise self._reader.damaged(f"the postings of {', '.join(stem for stem, *_ in rows)}")
         saturated = np.where(numbers < documents, weight * (K1 + 1) / (weight + K1), weight)
         found: dict[str, StemPostings] = {}
-        last = 0
+        phrases = np.uint32(documents)  # where they begin
         # Parts of what is kept and forgotten together.
-        for (stem, having, _), length in zip(rows, lengths, strict=True):
-            first, last = last, last + length
-            found[stem] = StemPostings(numbers[first:last], saturated[first:last], having, idf(units, having))
+        for (stem, having, _), (first, last) in zip(rows, pairwise(starts), strict=True):
+            own = numbers[first:last]
+            found[stem] = StemPostings(
+                own, saturated[first:last], having, int(own.searchsorted(phrases)), idf(units, having)
+            )
         return found
+
+
+def _ascend(numbers: NDArray[np.uint32], starts: Sequence[int]) -> bool:
+    """Whether numbers ascend from each start to the next."""
+    return set(starts).issuperset((np.flatnonzero(numbers[1:] <= numbers[:-1]) + 1).tolist())
 
 
 def _within(numbers: NDArray[Any], low: int, high: int) -> bool:

@@ -203,7 +203,6 @@ class QueryRanker:
     def _replaced(self, ranked: list[RankedId]) -> list[RankedId]:
         """The same ids, each deprecated one that was found behind what takes its place."""
         rows: dict[str, RankedId] = {}
-        self._reader.entry.load(row.id for row in ranked if row.why == "found")
         for row in ranked:
             other = replacement(row.id, self._reader) if row.why == "found" and row.id not in rows else ""
             if other:

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
-    from kb_serve.rank.inverted_index import InvertedIndex, Scores
+    from numpy.typing import NDArray
+
+    from kb_serve.rank.inverted_index import InvertedIndex, Scores, StemPostings
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,24 +27,65 @@ class Concept:
 
 @dataclass(frozen=True, slots=True)
 class Scored:
-    """Of every document and phrase, by number: its score, and its coverage, the share of the query that it speaks of.
-
-    A phrase's score is the share of it, by rarity, that the query speaks of. What has none of the query's stems has 0.
+    """Of every document, by number: its score, and its coverage, the share of the query that it speaks of. What has
+    none of the query's stems has 0.
     """
 
     scores: Scores
     coverage: Scores
 
 
+@dataclass(frozen=True, slots=True)
+class SaidPhrases:
+    """Phrases of which a query has a stem, in their order: the document that each asks for, the share of it, by rarity,
+    that the query speaks of, and the share of the query that it has.
+    """
+
+    asked: NDArray[np.int32]
+    shares: Scores
+    coverage: Scores
+
+
 def score_all(index: InvertedIndex, concepts: Sequence[Concept]) -> Scored:
-    """Scores the documents and phrases of an index by the concepts of a query."""
-    scores, coverage = np.zeros(index.ends[-1], np.float32), np.zeros(index.ends[-1], np.float32)
+    """Scores the documents of an index by the concepts of a query."""
+    documents = index.ends[1]
+    scores, coverage = np.zeros(documents, np.float32), np.zeros(documents, np.float32)
+    for postings, weight, share in _weighed(index, concepts):
+        numbers = postings.numbers[: postings.documents]
+        np.add.at(scores, numbers, weight * postings.saturated[: postings.documents])
+        np.add.at(coverage, numbers, share)
+    return Scored(scores, coverage)
+
+
+def said_phrases(index: InvertedIndex, concepts: Sequence[Concept], wanted: NDArray[np.bool_]) -> SaidPhrases:
+    """The phrases that ask for one of the ``wanted`` documents: there are so many others that they are not scored."""
+    weighed = [*_weighed(index, concepts)]
+    numbers = np.concatenate([postings.numbers[postings.documents :] for postings, *_ in weighed])
+    numbers -= np.uint32(index.ends[1])
+    shares = np.concatenate(
+        [weight * postings.saturated[postings.documents :] for postings, weight, _ in weighed]
+    )
+    coverage = np.repeat(
+        [share for *_, share in weighed], [len(one.numbers) - one.documents for one, *_ in weighed]
+    )
+    kept = np.flatnonzero(wanted[index.asked[numbers]])
+    found = numbers[kept]
+    phrases = np.sort(found)
+    places = phrases.searchsorted(found)  # the first of each phrase: the others of it stay 0
+    said = SaidPhrases(
+        index.asked[phrases], np.zeros(len(phrases), np.float32), np.zeros(len(phrases), np.float32)
+    )
+    np.add.at(said.shares, places, shares[kept])
+    np.add.at(said.coverage, places, coverage[kept])
+    return said
+
+
+def _weighed(
+    index: InvertedIndex, concepts: Sequence[Concept]
+) -> Iterator[tuple[StemPostings, np.float32, np.float32]]:
+    """The postings of each concept that has a stem, its weight, and which share of the query it is."""
     whole = sum(concept.idf for concept in concepts) or 1.0
     for concept in concepts:
-        if not concept.stem:
-            continue
-        postings = index.postings(concept.stem)
-        weight = concept.weight * concept.idf
-        np.add.at(scores, postings.numbers, np.float32(weight) * postings.saturated)
-        np.add.at(coverage, postings.numbers, np.float32(weight / whole))
-    return Scored(scores, coverage)
+        if concept.stem:
+            weight = concept.weight * concept.idf
+            yield index.postings(concept.stem), np.float32(weight), np.float32(weight / whole)

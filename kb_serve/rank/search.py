@@ -20,7 +20,7 @@ from kb_build.index.analysis import STOP_WORDS, stem, stems_of, words
 from kb_build.schema import DOCUMENT_KINDS
 from kb_build.symbols.api_names import NODE, OPERATORS
 from kb_serve.rank.inverted_index import InvertedIndex
-from kb_serve.rank.scoring import Concept, score_all
+from kb_serve.rank.scoring import Concept, said_phrases, score_all
 from kb_serve.rank.signals import Evidence, scores_of
 
 if TYPE_CHECKING:
@@ -204,7 +204,7 @@ class Searcher:
         if not len(numbers):
             return None
         around = np.zeros(topics.count + 1, np.float32)  # the last: for the units that have no topic, -1
-        around[:-1] = _told(found, slice(*self.index.ends[:2]))
+        around[:-1] = _told(found, slice(units.count, None))
         own, topic = _told(found, numbers), units.topics[numbers]
         texts = _float32(own + TOPIC_WEIGHT * np.where(topic >= 0, around[topic], ALONE * own))
         best = _top(texts, _CANDIDATES)
@@ -213,7 +213,7 @@ class Searcher:
             frozenset(words(text)),
             failed,
             texts,
-            self._asked(found, numbers, topic),
+            self._asked(concepts, numbers, topic),
             self.index.counts[numbers],
             self.index.areas[numbers],
             units.chapters[numbers],
@@ -232,44 +232,43 @@ class Searcher:
         kinds = said & _KINDS
         called: Scores | None = None
         refs = self.index.levels[0].refs
-        near = numbers[:_NEAREST].tolist()
-        labels = self._node_labels(near)
-        for place, number in enumerate(near):
+        labels = self._node_labels(numbers[:_NEAREST])
+        for place, number in enumerate(numbers[:_NEAREST].tolist()):
             ref = refs[number]
-            name, counts = (stems_of(labels[ref]), _AS_NODE) if ref in labels else _name_of(ref, kinds)
+            name, counts = (labels[ref], _AS_NODE) if ref in labels else _said_name(ref, said, kinds)
             if len(name) >= _WORDS_OF_A_NAME and name <= said:
                 called = np.zeros(len(numbers), np.float32) if called is None else called
                 called[place] = counts * sum(asked[part] for part in name) / sum(asked.values())
         return called
 
-    def _node_labels(self, numbers: Iterable[int]) -> dict[str, str]:
-        """The labels of the classes of nodes that are among some units."""
+    def _node_labels(self, numbers: NDArray[np.intp]) -> dict[str, Set[str]]:
+        """The words of the labels of the classes of nodes that are among some units."""
         units = self.index.levels[0]
-        nodes = [
-            units.refs[number]
-            for number in numbers
-            if units.kinds[number] == _NODE and not units.members[number]
-        ]
-        self._reader.entry.load(nodes)
-        entries = map(self._reader.entry, nodes)
+        of_nodes = numbers[(units.kinds[numbers] == _NODE) & ~units.members[numbers]]
+        paths = [units.refs[number] for number in of_nodes.tolist()]
+        self._reader.entry.load(paths)
+        entries = filter(None, map(self._reader.entry, paths))
         return {
-            entry.path: entry.label for entry in entries if entry and self._reader.descends(entry.path, NODE)
+            entry.path: stems_of(entry.label) for entry in entries if self._reader.descends(entry.path, NODE)
         }
 
-    def _asked(self, found: Scored, numbers: NDArray[np.intp], topic: NDArray[np.int32]) -> Scores:
+    def _asked(
+        self, concepts: Sequence[Concept], numbers: NDArray[np.intp], topic: NDArray[np.int32]
+    ) -> Scores:
         """How nearly the query is, word by word, what units or their topics are asked for, from 0: nothing.
 
         The nearest phrase counts, and in part what all of the same add up to, in the power of 1.5: a question often
         mixes the words of a few.
         """
         units, documents, _ = self.index.ends
-        phrases = np.flatnonzero(found.coverage[documents:] > 0)
-        shares, coverage = found.scores[documents:][phrases], found.coverage[documents:][phrases]
-        near, asked = np.sqrt(np.minimum(shares, 1) * coverage), self.index.asked[phrases]
-        nearest = np.zeros(documents + 1, np.float32)  # the last: of the units that have no topic
-        np.maximum.at(nearest, asked, near)
-        sums = np.bincount(asked, near * np.sqrt(near), documents + 1)
         places = np.stack((numbers, np.where(topic >= 0, units + topic, documents)))
+        wanted = np.zeros(documents + 1, np.bool_)  # the last: of the units that have no topic
+        wanted[places] = True
+        said = said_phrases(self.index, concepts, wanted)
+        near = np.sqrt(np.minimum(said.shares, 1) * said.coverage)
+        nearest = np.zeros(len(wanted), np.float32)
+        np.maximum.at(nearest, said.asked, near)
+        sums = np.bincount(said.asked, near * np.sqrt(near), len(wanted))
         best = nearest[places]
         return _float32((best + _OTHERS * (np.cbrt(np.square(sums[places])) - best)).max(axis=0))
 
@@ -312,16 +311,19 @@ class Searcher:
         return [*first, *few, *later][:limit]
 
 
-def _name_of(ref: str, kinds: Set[str]) -> tuple[Set[str], float]:
-    """(the words that a symbol is called by, how much it counts that a query says them): an operator by its own name,
-    with the ``kinds`` of things that are asked for; a member by its owner's and its own, if that adds something.
+def _said_name(ref: str, said: Set[str], kinds: Set[str]) -> tuple[Set[str], float]:
+    """(the words that a symbol is called by, how much it counts that a query says them), if they are all ``said``: an
+    operator by its own name, with the ``kinds`` of things that are asked for; a member by its owner's and its own, if
+    that adds something.
     """
     path, _, last = ref.rpartition(".")
-    own = stems_of(last)
+    # Most are pages, which have no owner, or are not said: their names need no more looking at.
+    if not path or not (own := stems_of(last)) <= said:
+        return _NO_NAME, 0.0
     if ref.startswith(OPERATORS):
         return (own, 1.0) if own >= kinds else (_NO_NAME, 0.0)
-    owners = stems_of(path.rpartition(".")[2]) if path else _NO_NAME
-    return (owners | own, _AS_MEMBER) if owners and not own <= owners else (_NO_NAME, 0.0)
+    owners = stems_of(path.rpartition(".")[2])
+    return (owners | own, _AS_MEMBER) if owners <= said and not own <= owners else (_NO_NAME, 0.0)
 
 
 def _told(found: Scored, numbers: NDArray[np.intp] | slice) -> Scores:

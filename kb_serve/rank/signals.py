@@ -138,7 +138,7 @@ def chapter(evidence: Evidence, logits: Scores) -> Scores:
     best = np.argpartition(-logits, count - 1)[:count]
     strength = np.exp(_FEEDBACK_POWER * (logits[best] - logits.max()))
     votes = np.bincount(evidence.chapters[best], strength, int(evidence.chapters.max()) + 1)
-    return (votes / votes.max()).astype(np.float32)[evidence.chapters]
+    return (votes[evidence.chapters] / votes.max()).astype(np.float32)
 
 
 def scores_of(evidence: Evidence) -> Scores:

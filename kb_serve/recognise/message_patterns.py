@@ -131,6 +131,7 @@ def classes_of_things(query: str) -> frozenset[str]:
     return frozenset(_OF_CLASS.findall(query))
 
 
+@lru_cache(maxsize=8)  # the same
 def without_wording(query: str) -> str:
     """A query without the wording of messages that looks like code or names."""
     return _WORDING.sub(" ", _TRACEBACK.sub(" ", query))

@@ -25,6 +25,8 @@ _STATED = r"(?<!\bis)(?<!\bare)(?<!\bhas)(?<!\bhave)"  # "there is no operator" 
 _UNWANTED = re.compile(rf"{_STATED},?\s\(?{_LACKING}\s{_THING}(?:\s(?:or|and|nor)\s{_THING})*\)?", re.I)
 _OTHER_MEANS = re.compile(rf"{_STATED}\s(?:without|w/o|not\susing)\s{_MEANS}{_END}", re.I)
 _EXPORTED = re.compile(r"\bexport", re.I)  # as it is without its modifiers
+# Without one of these, a question says nothing of the kind.
+_MAY_SAY_SO = re.compile(r"\b(?:without|w/o|not?|instead|rather|headless(?:ly)?|background|blender)\b", re.I)
 _SPARED = re.compile(rf"\swithout\s\w+ing\s(?:it|them){_END}", re.I)
 _WHY = re.compile(r"why\b", re.I)  # asks what the case is, not how to do something
 _OF_OPERATORS = re.compile(_OPERATORS, re.I)
@@ -60,7 +62,7 @@ class Wanted(NamedTuple):
 
 def without_unwanted(query: str) -> Wanted:
     """A question, its blanks single, as it would be asked by who only knows what is wanted."""
-    if is_message(query) or _WHY.match(query):
+    if is_message(query) or _WHY.match(query) or not _MAY_SAY_SO.search(query):
         return Wanted(query)
     asked = _SPARED.sub("", _without_run(_without_version(query)))
     asked, unwanted = _take_out(_UNWANTED, asked)

@@ -166,6 +166,8 @@ class Expressions:
 
     def _expressions(self, chains: list[Chain], recognition: Recognition) -> None:
         code = [chain for chain in chains if chain.is_code and _is_api(chain)]
+        if not code:
+            return
         code.sort(key=lambda chain: chain.leads_on)
         prose = said_in_words(chains)
         is_script = len(code) > 1 and any(chain.steps or chain.assigned for chain in code)

@@ -39,11 +39,13 @@ class LooseNames:
         variable, beside other code, is not corrected, nor denied.
         """
         name = chain.attributes[-1] if chain.attributes else chain.root
-        rows = [
-            entry
+        called = [
+            identifier
             for form, identifier in self._reader.by_key(key(name))
-            if form in {FORM_NAME, FORM_SHORT} and (entry := self._reader.entry(identifier))
+            if form in {FORM_NAME, FORM_SHORT}
         ]
+        self._reader.entry.load(called)
+        rows = list(filter(None, map(self._reader.entry, called)))
         if not (rows or chain.steps or is_variable) and is_like_a_node(name):
             add_nodes_meant(name, _NODE_MEANT, self._reader, recognition)
             return
@@ -83,8 +85,7 @@ class LooseNames:
         for rank, path in enumerate(list(best.values())[:_FEW]):
             recognition.add(path, 0.84 - 0.01 * rank, SIMILAR)
         is_name = "_" in name and not chain.assigned and not self._reader.by_key(key(name))
-        is_name = is_name and not self._reader.is_written(name)
-        if best or is_name:
+        if best or (is_name and not self._reader.is_written(name)):
             recognition.missing.append(MissingName(name))
 
     def _likeliest_owners(self, rows: list[SymbolEntry], prose: set[str]) -> list[SymbolEntry]:

@@ -111,9 +111,13 @@ class NamesBeside:
         """
         bare = [chain.root for chain in chains if not chain.steps]
         names = list(dict.fromkeys(bare))
-        self._reader.entry.load(TYPES + root for root in names)
-        named = (self._reader.entry(TYPES + root) for root in names)
+        # All classes have a capital or a ``_`` in their names.
+        paths = [TYPES + root for root in names if "_" in root or not root.islower()]
+        self._reader.entry.load(paths)
+        named = map(self._reader.entry, paths)
         classes = [entry for entry in named if entry and entry.kind == "class"]
+        if not classes:
+            return
         # ``mass of ClothSettings``
         assigned = {chain.root for chain in chains if chain.assigned and not chain.steps}
         before = {

@@ -192,9 +192,10 @@ class Corrector:
         ``readings`` are the chain's, as it is.
         """
         corrections: list[Correction] = []
-        if not readings or readings[0].fit < 1.0:
+        may_be_class = chain.root[:1].isupper() and not chain.root.isupper()
+        if may_be_class and (not readings or readings[0].fit < 1.0):
             root = self.root(chain.root)
-            if root and root.similarity < 1.0 and chain.root[:1].isupper() and not chain.root.isupper():
+            if root and root.similarity < 1.0:
                 corrections.append(root)
                 chain = replace(chain, root=root.meant)
                 readings = self._resolver.resolve(chain)

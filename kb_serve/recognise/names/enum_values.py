@@ -77,10 +77,12 @@ class EnumValues:
 
         ``classes`` are what a message names as the classes of things: no values.
         """
+        if not (possible := self.values(query)) and not classes:
+            return
         text = _ERROR.sub(" ", query)
         quoted = [a or b for a, b in _QUOTED.findall(text)][:_MOST_VALUES]
         names = {name for _, name in _SUBSCRIPT.findall(query) if not name.isupper()}
-        values = [value for value in self.values(query) if value not in names and value not in classes]
+        values = [value for value in possible if value not in names and value not in classes]
         if not values and not classes:
             return
         for value in quoted:
@@ -118,6 +120,8 @@ class EnumValues:
     @staticmethod
     def values(query: str) -> list[str]:
         """Possible values: the first quoted texts and words in capitals."""
+        if query.islower() and "'" not in query and '"' not in query:
+            return []
         text = _ERROR.sub(" ", query)
         found = dict.fromkeys([*(a or b for a, b in _QUOTED.findall(text)), *_CAPITALS.findall(text)])
         return list(found)[:_MOST_VALUES]

@@ -88,7 +88,8 @@ class Spellings:
             recognition.add(slug, 1.0, "exact")
             return
         called = _MEMBER.sub(".", _called(text))
-        if self._reader.entry(PROPERTIES + called):  # rather than RNA's class of the same name
+        # Rather than RNA's class of the same name.
+        if " " not in called and self._reader.entry(PROPERTIES + called):
             recognition.add(PROPERTIES + called, 1.0, "exact")
             return
         if inherited := self._inherited(called):

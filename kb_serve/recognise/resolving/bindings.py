@@ -34,6 +34,8 @@ def with_bindings(text: str, chains: Sequence[Chain]) -> list[Chain]:
     """The chains of a text, and behind them the sockets in their calls; those that begin with a variable which was
     bound before begin with what it was bound to, and this leads on.
     """
+    if not any(chain.steps for chain in chains):  # plain words
+        return [*chains]
     bound: dict[str, _Binding] = {}
     elements: dict[str, _Binding] = {}
     found: list[Chain] = []
