@@ -232,6 +232,10 @@ _RULED = (
     "In a script: `with bpy.context.temp_override(particle_settings=psys.settings): bpy.ops.boid.rule_add("
     "type='FOLLOW_LEADER')`. Without it nothing is added, and {'CANCELLED'} is all that is returned."
 )
+_SMOOTHED = (
+    "The Smooth by Angle modifier is a group of geometry nodes: `bpy.ops.object.shade_auto_smooth(angle=0.5)` adds it "
+    "to the selected objects."
+)
 _FACES = "The lists hold the faces themselves (`BMFace`), not their indices."
 
 ADVICE: tuple[Advice, ...] = (
@@ -266,6 +270,11 @@ ADVICE: tuple[Advice, ...] = (
         _WINDOWED,
         _of("WindowManager.popover", "WindowManager.popup_menu")
         | {"bpy.ops.wm.call_menu", "bpy.ops.wm.call_panel"},
+    ),
+    Advice(
+        _SMOOTHED,
+        wherever=(_stems("smooth"), _stems("angle"), _stems("modifier modifiers")),
+        needs="bpy.ops.object.shade_auto_smooth",
     ),
     Advice(_RULED, frozenset({"bpy.ops.boid.rule_add"})),
     Advice(_NO_KEY, _of("RetimingKeys.add")),

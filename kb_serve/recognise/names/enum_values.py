@@ -11,7 +11,7 @@ from kb_build.index.analysis import key, terms
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.lines import taken_text
 from kb_build.symbols.paths import argument_of, plain_path
-from kb_serve.recognise.names.likely_values import explaining
+from kb_serve.recognise.names.likely_values import explaining, same_elsewhere
 from kb_serve.recognise.recognition import WHOLE_LABEL
 
 if TYPE_CHECKING:
@@ -187,11 +187,14 @@ class EnumValues:
         return explaining(value, self._items(owner), self._reader)
 
     def condition(self, owner: str, value: str) -> str:
-        """A sentence on where an enumeration takes a value; "" if everywhere, or nowhere."""
+        """A sentence on where an enumeration takes a value, and those of its name; "" if everywhere, or nowhere."""
         where = self.where(owner, value)
         if not where:
             return ""
-        return f"`{owner}` = '{value}' is {taken_text(where)}."
+        others = same_elsewhere(value, (item.identifier for item in self._items(owner)))
+        taken = ((other, found) for other in others if (found := self.where(owner, other)))
+        elsewhere = "".join(f"; `'{other}'` is {taken_text(found)}" for other, found in taken)
+        return f"`{owner}` = '{value}' is {taken_text(where)}{elsewhere}."
 
     def _difference(self, owner: str, values: set[str]) -> int:
         """How many items an enumeration has more or less than some, in that of its modes in which that is fewest; older

@@ -18,6 +18,7 @@ _MOST = 3
 _LONG = 4  # letters of an item that a wrong one begins with
 _TELLING = 2  # words of a label that other texts have
 _SHORT = 3  # … of a wrong one that an item begins with
+_OF = " - "
 _OPPOSITES = frozenset({"neg", "negative"})
 _MINUS = re.compile(r"-(?=[XYZ]$)")
 
@@ -30,11 +31,20 @@ def item_called(setting: Symbol | None, names: Iterable[str]) -> str:
     )
 
 
+def same_elsewhere(written: str, items: Iterable[str]) -> list[str]:
+    """The items of the same name that are of something else: ``AgX - High Contrast`` for ``High Contrast``."""
+    name = written.rpartition(_OF)[2]
+    return [item for item in items if item != written and item.rpartition(_OF)[2] == name][:_MOST]
+
+
 def likely_values(written: str, items: Sequence[str]) -> list[str]:
-    """The items that a wrong one may mean: of those that point the same way, ``NEGATIVE_Z`` for ``-Z``, those that are
+    """The items that a wrong one may mean: those of the same name that are of something else, ``AgX - High Contrast``
+    for ``Filmic - High Contrast``; of those that point the same way, ``NEGATIVE_Z`` for ``-Z``, those that are
     most like it, those that it begins with, or the other way round, or else those that it is made of and more.
     """
     written = _MINUS.sub("NEGATIVE_", written)
+    if same := same_elsewhere(written, items):
+        return same
     if same := _of_same_sense(written, items):
         return same
     items = [*_without_opposites(written, items)]

@@ -880,3 +880,11 @@ open(sys.argv[-1], "w").write(json.dumps(counts))
     before, without, within = told_by_blender(script, tmp_path)
     assert without == before
     assert within == before + 1
+
+
+def test_smooth_by_angle_is_added_by_an_operator(kb: KnowledgeBase) -> None:
+    (note,) = kb.query("smooth by angle modifier").notes
+    assert "`bpy.ops.object.shade_auto_smooth(angle=0.5)` adds it" in note
+    bpy.ops.mesh.primitive_cube_add()
+    bpy.ops.object.shade_auto_smooth(angle=0.5)
+    assert [modifier.type for modifier in bpy.context.object.modifiers] == ["NODES"]

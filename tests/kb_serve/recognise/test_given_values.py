@@ -123,3 +123,10 @@ def test_a_value_that_nothing_so_called_takes_is_told_whatever_the_variable_is(
 @pytest.mark.parametrize("query", ["x.type = 'BEVEL'", "c.type == 'COPY_LOCATION'", "socket.type == 'VALUE'"])
 def test_a_value_that_another_one_so_called_takes_is_not_told(query: str, kb: KnowledgeBase) -> None:
     assert not any("is not a value" in note for note in kb.query(query).notes)
+
+
+@pytest.mark.parametrize("value", ["High Contrast", "Filmic - High Contrast"])
+def test_a_look_of_another_view_leads_to_that_of_this_one(kb: KnowledgeBase, value: str) -> None:
+    (note,) = kb.query(f"scene.view_settings.look = '{value}'").notes
+    assert "`'AgX - High Contrast'` " in note
+    assert "only with view_transform='AgX'" in note

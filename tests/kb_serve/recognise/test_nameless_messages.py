@@ -123,6 +123,8 @@ bpy.ops.constraint.followpath_path_animate(constraint="Follow Path")
 scene.render.engine = "CYCLES"; bpy.ops.object.bake(type="COMBINED", pass_filter={"DIRECT", "COLOR"})
 ob.asset_mark(); marked()
 loops_layer_of_a_vertex()
+mesh.vertices[::2]
+armature(); bpy.ops.pose.constraint_add(type="IK")
 bpy.msgbus.subscribe_rna(key=ob, owner=ob, args=(), notify=ob.select_get)
 bpy.utils.units.to_string("LENGTH", "METRIC", 3)
 bpy.utils.units.to_value("METRIC", "LENGHT", "3mm")
@@ -197,6 +199,11 @@ def loops_layer_of_a_vertex():
     bm = bmesh.new()
     layer = bm.loops.layers.uv.new()
     bm.verts.new()[layer]
+
+def armature():
+    bpy.ops.object.armature_add()
+    bpy.ops.object.mode_set(mode="POSE")
+    bpy.context.object.data.bones.active = None
 
 def marked():
     with bpy.context.temp_override(id=ob):

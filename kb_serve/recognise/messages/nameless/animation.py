@@ -14,6 +14,12 @@ ANIMATION = (
         "bpy.ops.constraint.followpath_path_animate(constraint=con.name)`.",
     ),
     NamelessMessage(
+        ("No active pose bone to add a constraint to",),
+        ("bpy.ops.pose.constraint_add", f"{T}ArmatureBones.active"),
+        'Make a bone active before: `armature.bones.active = armature.bones["Bone"]`. A script needs no active bone: '
+        "`obj.pose.bones[\"Bone\"].constraints.new('IK')`.",
+    ),
+    NamelessMessage(
         ("the track does not have any space to accommodate this new strip",),
         (f"{T}NlaStrips.new", f"{T}NlaTracks.new"),
         "The track has a strip in these frames: give another `start`, or add it to a new track "

@@ -66,6 +66,12 @@ PYTHON = (
         "The group has no input of that identifier: `item.identifier` of its `interface.items_tree` tells it.",
     ),
     NamelessMessage(
+        ("slice indices must be integers or None or have an __index__ method",),
+        (COLLECTION,),
+        "A collection of Blender's takes no step: `vertices[::2]` fails, `vertices[:][::2]` slices the list that `[:]` "
+        "makes.",
+    ),
+    NamelessMessage(
         ("bpy_prop_collection[key]: invalid key, must be",),
         (COLLECTION, f"{T}bpy_prop_collection.get"),
         "A collection is asked for a name or a whole number: `collection[thing.name]`, `collection[int(number)]`.",
