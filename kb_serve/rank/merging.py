@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import STOP_WORDS, stems_of, words
+from kb_build.symbols.paths import last_name
 from kb_serve.rank.asked_words import SCRIPT_WORDS
 from kb_serve.rank.deprecated import replacement
 from kb_serve.rank.meant_members import MeantMembers, meant_members
@@ -17,6 +18,7 @@ from kb_serve.rank.opposites import opposites_last
 from kb_serve.rank.ranked_id import RankedId
 from kb_serve.rank.sections import asked_section
 from kb_serve.recognise.message_patterns import is_message, prose_of
+from kb_serve.recognise.names.corrections import is_misspelling
 from kb_serve.recognise.notes import SIMILAR, Notes
 from kb_serve.recognise.recogniser import Recogniser
 from kb_serve.recognise.resolving.variables import is_short_form
@@ -185,7 +187,10 @@ class QueryRanker:
     def _meant(self, missing: MissingName, recognition: Recognition) -> MeantMembers:
         """What may be meant by a name: what was recognised with certainty, else what the search finds of its class."""
         alike = tuple(
-            match.id for match in recognition.matches if match.why == SIMILAR and match.sure > _MEANT
+            match.id
+            for match in recognition.matches
+            if match.why == SIMILAR
+            and (match.sure > _MEANT or is_misspelling(missing.name, last_name(match.id)))
         )
         if alike:
             return MeantMembers(alike, clear=True)

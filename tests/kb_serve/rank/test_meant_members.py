@@ -100,3 +100,18 @@ def test_what_is_called_like_a_variable_may_be_meant_behind_what_has_the_name(kb
     answer = kb.query("node.position = (-300, 200)")
     assert f"{T}Node.location" in [hit.id for hit in answer.hits[:2]]
     assert any(note.startswith("If `node` is one of these") for note in answer.notes)
+
+
+@pytest.mark.parametrize(
+    ("owner", "written", "meant"),
+    [
+        ("SubsurfModifier", "level", "levels"),
+        ("CameraDOFSettings", "focal_distance", "focus_distance"),
+        ("DynamicPaintSurface", "use_antialias", "use_antialiasing"),
+    ],
+)
+def test_what_can_only_be_misspelt_comes_before_its_class(
+    owner: str, written: str, meant: str, kb: KnowledgeBase
+) -> None:
+    answer = kb.query(f"AttributeError: '{owner}' object has no attribute '{written}'")
+    assert answer.hits[0].id == f"bpy.types.{owner}.{meant}"
