@@ -30,7 +30,7 @@ from kb_build.flow.types import Instance
 from kb_build.index.analysis import key, words
 from kb_build.symbols.api_names import NODE
 from kb_build.symbols.api_names import TYPES as T
-from kb_build.symbols.flags import NODE_FAMILIES, alike_nodes
+from kb_build.symbols.flags import NODE_FAMILIES
 from kb_build.symbols.paths import last_name
 from kb_check.calls import CallSite, calls_not_ready_for
 from kb_check.findings import Finding, Fix
@@ -39,7 +39,7 @@ from kb_check.node_trees import tree_added_to
 from kb_check.raised import refusing_class
 from kb_check.rule import Rule
 from kb_check.script import once_for_each, once_per_script
-from kb_serve.recognise.names.node_names import tree_of_family
+from kb_serve.recognise.names.node_names import same_in_tree, tree_of_family
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -236,15 +236,9 @@ def _refused(script: Script, call: CallSite, node: ast.expr, name: str) -> Itera
         said = f"`{symbol.path}` is a node of {' and '.join(symbol.trees)}: a `{tree}` refuses it"
     else:
         return
-    others = _others(script, name, tree or tree_of_family(name))
+    others = same_in_tree(name, tree or tree_of_family(name), script.api.symbols.symbol)
     instead = f" Use {' or '.join(f'`{other}`' for other in others)}." if others else ""
     yield Finding(RULE.id, "error", script.span(node), f"{said}.{instead}", symbol.path, others)
-
-
-def _others(script: Script, name: str, tree: str) -> tuple[str, ...]:
-    """The nodes of a tree that are called as another tree's: ``ShaderNodeMath`` for ``CompositorNodeMath``."""
-    symbols = map(script.api.symbols.symbol, alike_nodes(name))
-    return tuple(symbol.path for symbol in symbols if symbol and tree in symbol.trees)
 
 
 RULE = Rule("unknown-node", "error", "A node or socket type that does not exist, or not in that tree", _check)

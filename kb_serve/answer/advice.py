@@ -11,6 +11,7 @@ from kb_serve.recognise.code.products import CLASSES, WITH_AT
 from kb_serve.recognise.messages.nameless.python import PLAIN_FUNCTION
 from kb_serve.recognise.messages.none_before import TAKES_NO_MODIFIER
 from kb_serve.recognise.messages.ways_to_run import NO_FLUIDS
+from kb_serve.recognise.names.elements import ADDS_BOID_RULE
 
 _STROKE = "_bpy_internal.grease_pencil.stroke.GreasePencilStroke"
 _STYLE = f"{TYPES}MaterialGPencilStyle"
@@ -229,8 +230,7 @@ _SIGNED = (
 )
 _WINDOWED = "It crashes a Blender without a window (`--background`, or `import bpy` in another Python)."
 _RULED = (
-    "In a script: `with bpy.context.temp_override(particle_settings=psys.settings): bpy.ops.boid.rule_add("
-    "type='FOLLOW_LEADER')`. Without it nothing is added, and {'CANCELLED'} is all that is returned."
+    f"In a script: {ADDS_BOID_RULE}. Without it nothing is added, and {'CANCELLED'} is all that is returned."
 )
 _SMOOTHED = (
     "The Smooth by Angle modifier is a group of geometry nodes: `bpy.ops.object.shade_auto_smooth(angle=0.5)` adds it "

@@ -10,7 +10,7 @@ from kb_build.symbols.paths import as_code, split_path
 from kb_build.symbols.unlisted import OPTIONS, option_of
 from kb_serve.recognise.names.corrections import nearest
 from kb_serve.recognise.names.enum_values import EnumValues
-from kb_serve.recognise.resolving.subscripts import PROPERTIES, CustomProperties
+from kb_serve.recognise.resolving.subscripts import MODIFIER_PROPERTIES, CustomProperties
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -155,7 +155,9 @@ class Notes:
             if not missing.owner and (similar or not recognition.matches):
                 found = closest or " What follows was found by its words."
                 yield f"Nothing is called `{missing.name}` in Blender {self._version}.{found}"
-            elif missing.owner == PROPERTIES:  # of which each instance has the inputs of its own group
+            elif (
+                missing.owner == MODIFIER_PROPERTIES
+            ):  # of which each instance has the inputs of its own group
                 yield CustomProperties(self._reader).on_inputs()
             elif missing.owner and missing.name.startswith("["):
                 yield f"`{missing.owner}` takes no custom properties: `{missing.name}` fails.{closest}"

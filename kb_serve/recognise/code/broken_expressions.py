@@ -12,7 +12,7 @@ from kb_serve.recognise.names.members_within import of_elements
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.resolving.chain_starts import ROOTS
 from kb_serve.recognise.resolving.chains import ChainStep
-from kb_serve.recognise.resolving.subscripts import PROPERTIES, PROPERTIES_OF_MODIFIER
+from kb_serve.recognise.resolving.subscripts import MODIFIER_PROPERTIES, PROPERTIES_OF_MODIFIER
 from kb_serve.recognise.resolving.variables import OTHERWISE, USUAL, is_guess, usual_classes
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ class BrokenExpressions:
 
     def tell(self, chain: Chain, resolved: ResolvedChain, later: float, recognition: Recognition) -> None:
         """Adds a chain as far as it could be resolved, and its missing name."""
-        if resolved.owner == PROPERTIES:
+        if resolved.owner == MODIFIER_PROPERTIES:
             recognition.missing.append(MissingName(resolved.missing, resolved.owner))
             recognition.add(PROPERTIES_OF_MODIFIER, _KNOWN_ELEMENT - later, "owner")
             return

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
-from kb_build.symbols.flags import alike_nodes
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.names.node_names import add_nodes_meant, tree_of_family
+from kb_serve.recognise.names.node_names import add_nodes_meant, same_in_tree, tree_of_family
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
@@ -40,10 +39,7 @@ class NodeTypes:
 
     def _tell_of_no_tree(self, name: str, recognition: Recognition) -> None:
         """Adds what the trees of its family take instead of a class of nodes that none takes."""
-        tree = tree_of_family(name)
-        others = [
-            one.path for one in map(self._reader.symbol, alike_nodes(name)) if one and tree in one.trees
-        ]
+        others = same_in_tree(name, tree_of_family(name), self._reader.symbol)
         instead = f" Use {' or '.join(f'`{other}`' for other in others)}." if others else ""
         recognition.notes.append(f"`{TYPES}{name}` is a class of nodes that no tree takes.{instead}")
         for other in others:

@@ -16,10 +16,13 @@ from kb_serve.recognise.resolving.bindings import with_bindings
 from kb_serve.recognise.resolving.chains import find_chains
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.messages.absent import Absent
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
+    from kb_serve.recognise.resolving.chains import Chain
 
 _FEW = 3
 _IS_READ = 0.98  # how sure what may be None is that the code reads the name of: before what it then lacks
@@ -48,7 +51,8 @@ class NoneBefore:
         """Adds what may have been None before ``.name``: pointers to classes that have the name, or once had it, what
         the context gives, and look-ups by name. Where the code calls what gives None, that alone.
         """
-        if self._tell_of_call(name, query, recognition):
+        chains = with_bindings(query, find_chains(query))
+        if self._tell_of_call(name, chains, recognition):
             return
         owners = {
             entry.owner.removeprefix(TYPES)
@@ -61,11 +65,7 @@ class NoneBefore:
         for removed in gone:
             recognition.add_removed(removed)
             owners.add(removed.path.rpartition(".")[0].removeprefix(TYPES))
-        read = {
-            (first.text, second.text)
-            for chain in with_bindings(query, find_chains(query))
-            for first, second in pairwise(chain.steps)
-        }
+        read = {(first.text, second.text) for chain in chains for first, second in pairwise(chain.steps)}
         around = set(terms(query))
         named_first = sorted(owners, key=lambda owner: (not around.issuperset(terms(owner)), owner))
         holders = [entry for owner in named_first[:_MANY] for entry in self._holders(owner)]
@@ -101,22 +101,21 @@ class NoneBefore:
             elif entry in told and (setting := self._setting(entry)):
                 recognition.notes.append(f"`{entry.path}` is None on what is new: set it, `{setting}`.")
 
-    def _tell_of_call(self, name: str, query: str, recognition: Recognition) -> bool:
+    def _tell_of_call(self, name: str, chains: Sequence[Chain], recognition: Recognition) -> bool:
         """Adds the call in the code that gives None, or gave it here; whether there is one."""
-        if method := self._returning_none(name, query):
+        if method := self._returning_none(name, chains):
             recognition.notes.append(
                 f"`{method}` changes its own value and returns None: read it in a line of its own."
             )
             recognition.add(method, _IS_READ, "error message")
-        elif self._makes_modifier(name, query):
+        elif self._makes_modifier(name, chains):
             self._tell_of_modifiers(name, recognition)
         else:
             return False
         return True
 
-    def _makes_modifier(self, name: str, query: str) -> bool:
+    def _makes_modifier(self, name: str, chains: Sequence[Chain]) -> bool:
         """Whether the code beside a message makes a modifier, and reads or sets its ``.name``."""
-        chains = with_bindings(query, find_chains(query))
         texts = ([step.text for step in chain.steps] for chain in chains)
         return any(
             name in steps and {"modifiers", "new"} <= set(steps[: steps.index(name)]) for steps in texts
@@ -251,9 +250,9 @@ class NoneBefore:
         ]
         return [entry for entry in holders if entry.owner != TYPES + cls] or holders
 
-    def _returning_none(self, name: str, query: str) -> str:
+    def _returning_none(self, name: str, chains: Sequence[Chain]) -> str:
         """The method that is called before ``.name`` and returns None; empty for none."""
-        for chain in with_bindings(query, find_chains(query)):
+        for chain in chains:
             for (first, call), (_, last) in pairwise(pairwise(chain.steps)):
                 if call.kind == "call" and last.text == name:
                     found = [

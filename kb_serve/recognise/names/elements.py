@@ -82,6 +82,10 @@ _LAYER_COLLECTION_ADDED = Elsewhere(
     f"{T}CollectionChildren.link",
     "A layer shows the scene's collections: `scene.collection.children.link(collection)` adds one.",
 )
+ADDS_BOID_RULE = (
+    "`with bpy.context.temp_override(particle_settings=psys.settings): "
+    "bpy.ops.boid.rule_add(type='FOLLOW_LEADER')`"
+)
 _PLANE_TRACK_ADDED = Elsewhere(
     "bpy.ops.clip.create_plane_track",
     "In a clip editor `bpy.ops.clip.create_plane_track()` makes one of four or more tracks that are selected.",
@@ -90,8 +94,7 @@ _PLANE_TRACK_ADDED = Elsewhere(
 ADDED_BY = {
     f"{T}BoidState.rules": Elsewhere(
         "bpy.ops.boid.rule_add",
-        "An operator adds one: `with bpy.context.temp_override(particle_settings=psys.settings): "
-        "bpy.ops.boid.rule_add(type='FOLLOW_LEADER')`.",
+        f"An operator adds one: {ADDS_BOID_RULE}.",
     ),
     f"{T}DynamicPaintCanvasSettings.canvas_surfaces": Elsewhere(
         "bpy.ops.dpaint.surface_slot_add",

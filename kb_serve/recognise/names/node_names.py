@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
 from kb_build.symbols.api_names import NODE, TYPES
-from kb_build.symbols.flags import NODE_FAMILIES
+from kb_build.symbols.flags import NODE_FAMILIES, alike_nodes
 from kb_serve.recognise.names.corrections import is_misspelling, nearest
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.recognition import MissingName
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
+    from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
 
@@ -33,6 +34,12 @@ def tree_of_family(name: str) -> str:
     """The class of the trees of the family of nodes that a name belongs to: CompositorNodeTree; empty for none."""
     own = _OWN.fullmatch(name)
     return _TREES.get(own[1], f"{own[1]}Tree") if own else ""
+
+
+def same_in_tree(name: str, tree: str, symbol_of: Callable[[str], Symbol | None]) -> tuple[str, ...]:
+    """The nodes of a tree that are called as a node of another family: ShaderNodeMath for ``CompositorNodeMath``."""
+    symbols = map(symbol_of, alike_nodes(name))
+    return tuple(symbol.path for symbol in symbols if symbol and tree in symbol.trees)
 
 
 def nodes_meant(name: str, reader: BaseReader) -> list[str]:

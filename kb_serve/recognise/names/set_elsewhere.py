@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.schema import Mark
 from kb_build.symbols.api_names import ID, OPERATORS, TYPES
 from kb_serve.recognise.names.operator_words import operator_of_class
 from kb_serve.recognise.names.said_otherwise import labelled
@@ -101,4 +100,4 @@ def _member(cls: str, name: str, reader: BaseReader) -> str:
 
 def _is_set(entry: SymbolEntry, cls: str) -> bool:
     is_own = entry.owner != ID or cls == _NEW_OBJECT.cls
-    return is_own and entry.kind == "property" and not entry.marks & Mark.READ_ONLY
+    return is_own and entry.kind == "property" and not entry.is_read_only

@@ -12,7 +12,7 @@ from kb_build.symbols.api_names import OBJECT, SIDES, TYPES
 from kb_build.symbols.paths import socket_node
 from kb_serve.recognise.code.refusals import is_listed, refuses
 from kb_serve.recognise.names.members_within import members_within
-from kb_serve.recognise.resolving.call_texts import arguments, texts_in
+from kb_serve.recognise.resolving.call_texts import texts_given
 from kb_serve.recognise.resolving.chain_starts import ROOTS
 from kb_serve.recognise.resolving.chains import ChainStep
 from kb_serve.recognise.resolving.variables import classes_of_parts, usual_classes
@@ -46,8 +46,7 @@ class LostName(NamedTuple):
 def _is_made(chain: Chain, node: str) -> bool:
     """Whether a call in a chain says which node it makes."""
     name = node.removeprefix(TYPES)
-    calls = (step.text for step in chain.steps if step.kind == "call")
-    return bool(name) and any(name in texts_in(given) for call in calls for _, given in arguments(call))
+    return bool(name) and name in texts_given(chain)
 
 
 class LostNames:

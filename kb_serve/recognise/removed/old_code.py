@@ -11,7 +11,7 @@ from kb_build.index.analysis import key, words
 from kb_build.symbols.api_names import OPERATORS, SIDES, TYPES, interface_part
 from kb_build.symbols.paths import is_socket, last_name, socket_node, split_path
 from kb_serve.recognise.removed.lost_names import LostName, LostNames, is_telling
-from kb_serve.recognise.resolving.call_texts import arguments, texts_in
+from kb_serve.recognise.resolving.call_texts import arguments, texts_given, texts_in
 from kb_serve.recognise.resolving.chain_starts import ROOTS
 from kb_serve.recognise.resolving.chains import find_chains
 from kb_serve.recognise.resolving.variables import USUAL, usual_classes, variable_fit
@@ -100,10 +100,7 @@ class OldCode:
         mask's node, not that of the mask.
         """
         owner, _, name = reading.symbols[-1].rpartition(".")
-        calls = (step.text for step in chain.steps if step.kind == "call")
-        made = (
-            f"{TYPES}{text}" for call in calls for _, given in arguments(call) for text in texts_in(given)
-        )
+        made = (f"{TYPES}{text}" for text in texts_given(chain))
         below = (
             cls
             for cls in (*reading.symbols[:-1], *made)

@@ -10,6 +10,8 @@ from kb_build.index.analysis import split_arguments
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kb_serve.recognise.resolving.chains import Chain
+
 _ARGUMENT = re.compile(r"\s*(?:(\w+)\s*=(?!=))?\s*(.*)", re.DOTALL)
 _STRINGS = re.compile(r"""(["'])((?:(?!\1).)*)\1""")
 
@@ -29,3 +31,9 @@ def texts_in(argument: str) -> list[str]:
     if argument[:1] not in set("'\"{"):
         return []
     return [match[2] for match in _STRINGS.finditer(argument)]
+
+
+def texts_given(chain: Chain) -> Iterator[str]:
+    """The quoted texts that the calls in a chain are given."""
+    calls = (step.text for step in chain.steps if step.kind == "call")
+    return (text for call in calls for _, given in arguments(call) for text in texts_in(given))

@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 NODES_MODIFIER = f"{TYPES}NodesModifier"
-PROPERTIES = f"{TYPES}NodesModifierProperties"
-OF_NODES_MODIFIER = (NODES_MODIFIER, PROPERTIES)  # what the inputs were, or are, asked of
+MODIFIER_PROPERTIES = f"{TYPES}NodesModifierProperties"
+OF_NODES_MODIFIER = (NODES_MODIFIER, MODIFIER_PROPERTIES)  # what the inputs were, or are, asked of
 PROPERTIES_OF_OPERATORS = f"{TYPES}OperatorProperties"
 _NEW_INPUT = f"{TYPES}NodeTreeInterface.new_socket"
 # How Blender identifies the inputs and outputs of a group, as keys of its modifier: by itself no other key looks so.
