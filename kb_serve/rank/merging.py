@@ -9,17 +9,15 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import STOP_WORDS, stems_of, words
-from kb_build.symbols.paths import last_name
 from kb_serve.rank.asked_words import SCRIPT_WORDS
 from kb_serve.rank.deprecated import replacement
-from kb_serve.rank.meant_members import MeantMembers, meant_members
+from kb_serve.rank.meant_names import MeantNames
 from kb_serve.rank.named_nodes import named_nodes
 from kb_serve.rank.opposites import opposites_last
 from kb_serve.rank.ranked_id import RankedId
 from kb_serve.rank.sections import asked_section
 from kb_serve.recognise.message_patterns import is_message, prose_of
-from kb_serve.recognise.names.corrections import is_misspelling
-from kb_serve.recognise.notes import SIMILAR, Notes
+from kb_serve.recognise.notes import Notes
 from kb_serve.recognise.recogniser import Recogniser
 from kb_serve.recognise.resolving.variables import is_short_form
 from kb_serve.recognise.unwanted import without_unwanted
@@ -29,12 +27,9 @@ if TYPE_CHECKING:
 
     from kb_serve.rank.search import Searcher, SearchHit
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.recognition import MissingName, Recognition
+    from kb_serve.recognise.recognition import Recognition
 
 SURE = 0.8  # from here on, named ids come before search hits
-_MEANT = 0.89  # how sure what the search finds of a class is meant by a name that it lacks
-_MOST_MEANT, _BEFORE = 0.99, 0.01
-_DOUBTED = 0.81  # … where something else has that name
 _FAR = 0.5  # share of the best hit's score below which another one is far from it
 _ALWAYS = 5  # hits for a description that are listed however far they are
 _NAMES = 4  # so many of those listed are symbols, if the search finds some that are not
@@ -119,6 +114,7 @@ class QueryRanker:
         self._reader = reader
         self._recogniser = Recogniser(reader)
         self._notes = Notes(reader)
+        self._meant = MeantNames(reader, lambda: self.searcher)
 
     @cached_property
     def searcher(self) -> Searcher:
@@ -138,7 +134,7 @@ class QueryRanker:
         if recognition.dead_end:  # what the words find would pass for the successor
             ranked = [RankedId(m.id, m.sure, m.why) for m in recognition.matches if m.sure >= SURE]
             return Ranking(ranked, recognition, named=False, notes=self._notes.on(recognition))
-        self._add_meant(recognition)
+        self._meant.add(recognition)
         prose = prose_of(query)
         asked, code = _without_code(prose, recognition)
         hits = self.searcher.search(
@@ -161,40 +157,6 @@ class QueryRanker:
         if not is_message(query):
             ranked = self._with_named_nodes(ranked, asked)
         return Ranking(ranked, recognition, named, self._notes.on(recognition), alike)
-
-    def _add_meant(self, recognition: Recognition) -> None:
-        """Adds what may be meant by the first name that its class lacks: before that class, and before what is spelled
-        a little like it. Where something else has that name, and may be meant as well, behind it.
-        """
-        missing = next((one for one in recognition.missing if one.owner), recognition.doubted)
-        is_found = recognition.removed or any(match.why == "within" for match in recognition.matches)
-        if missing is None or is_found or not missing.name.isidentifier():
-            return
-        meant = self._meant(missing, recognition)
-        # The class itself, and what else has that name.
-        others = [
-            match.sure
-            for match in recognition.matches
-            if match.id == missing.owner or match.why in {"enum item", "name"}
-        ]
-        sure = max([_MEANT, *(one + (_BEFORE if meant.clear else -_BEFORE) for one in others)])
-        if missing is recognition.doubted:
-            sure = _DOUBTED
-        for place, path in enumerate(meant.paths):
-            recognition.add(path, min(sure, _MOST_MEANT) - _BEFORE * place, SIMILAR)
-        recognition.matches.sort(key=lambda match: (-match.sure, match.why != "successor"))
-
-    def _meant(self, missing: MissingName, recognition: Recognition) -> MeantMembers:
-        """What may be meant by a name: what was recognised with certainty, else what the search finds of its class."""
-        alike = tuple(
-            match.id
-            for match in recognition.matches
-            if match.why == SIMILAR
-            and (match.sure > _MEANT or is_misspelling(missing.name, last_name(match.id)))
-        )
-        if alike:
-            return MeantMembers(alike, clear=True)
-        return meant_members(missing, self.searcher, self._reader)
 
     def _with_named_nodes(self, ranked: list[RankedId], asked: str) -> list[RankedId]:
         """The same ids, with the nodes that the question calls by their labels behind the first of them."""

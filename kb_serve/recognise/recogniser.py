@@ -180,7 +180,10 @@ class Recogniser:
                 recognition.add_removed(removed)
             gone = {removed.path for removed in (*old, *recognition.removed)}
             notes = list(wrong_arguments(chain, symbol, self._reader, gone))
-            recognition.notes += (*notes, *wrong_values(chain, symbol, gone, self._reader))
+            renamed = dict(
+                filter(None, (one.renamed_argument(symbol.path) for one in (*old, *recognition.removed)))
+            )
+            recognition.notes += (*notes, *wrong_values(chain, symbol, gone, self._reader, renamed))
             if any(note.startswith(NO_OVERRIDE) for note in notes):
                 recognition.add(OVERRIDE, 0.98, "error message")  # before the operator that does not take it
 

@@ -1,5 +1,5 @@
 """Whether a property or socket refuses what an expression is set to, by its type alone, and a function the keywords
-that it is called with.
+and texts that it is called with.
 """
 
 from __future__ import annotations
@@ -8,10 +8,13 @@ import ast
 import math
 from typing import TYPE_CHECKING
 
-from kb_serve.recognise.resolving.call_texts import arguments
+from kb_serve.recognise.resolving.call_texts import arguments, texts_in
+from kb_serve.signatures import places_of
 
 if TYPE_CHECKING:
-    from kb_build.symbols.records import Symbol
+    from collections.abc import Iterator
+
+    from kb_build.symbols.records import Parameter, Symbol
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.resolving.chains import Chain
 
@@ -44,13 +47,32 @@ def refuses(symbol: Symbol, chain: Chain) -> bool:
     return bool(chain.literal) and _refuses_literal(symbol, chain)
 
 
-def lacks_keyword(symbol: Symbol, chain: Chain) -> bool:
-    """Whether a function has no argument of a name that it is called with."""
-    given = keywords(chain)
-    if not given or symbol.kind != "function":
+def refuses_call(symbol: Symbol, chain: Chain) -> bool:
+    """Whether a function has no argument of a name or at a place that it is given, or its enumeration lacks a text."""
+    if symbol.kind != "function" or not chain.call:
         return False
+    given = keywords(chain)
     taken = {parameter.name for parameter in symbol.parameters}
-    return bool(taken) and not any(name.startswith("*") for name in taken) and not given <= taken
+    if given and taken and not any(name.startswith("*") for name in taken) and not given <= taken:
+        return True
+    places = places_of(symbol)
+    if places and sum(not name for name, _ in arguments(chain.call)) > len(places[0]):
+        return True
+    return any(
+        len(parameter.enum_items) > 1 and value not in {item.identifier for item in parameter.enum_items}
+        for parameter, value, _ in given_texts(symbol, chain.call)
+    )
+
+
+def given_texts(symbol: Symbol, call: str) -> Iterator[tuple[Parameter, str, str]]:
+    """(argument, text, all that is given) of the texts that a call gives to enumerations."""
+    by_name = {parameter.name: parameter for parameter in symbol.parameters}
+    places = places_of(symbol) if symbol.kind == "function" else None
+    left = iter(places[0] if places else ())
+    for name, given in arguments(call):
+        parameter = by_name.get(name or next(left, ""))
+        if parameter and not parameter.is_open:
+            yield from ((parameter, value, given) for value in texts_in(given))
 
 
 def keywords(chain: Chain) -> set[str]:

@@ -10,7 +10,7 @@ from kb_serve.recognise.code.contexts import NO_OVERRIDE, with_context
 from kb_serve.recognise.names.likely_keywords import likely_parameters
 from kb_serve.recognise.names.set_elsewhere import set_elsewhere
 from kb_serve.recognise.resolving.call_texts import arguments
-from kb_serve.signatures import signature_arguments
+from kb_serve.signatures import places_of
 from simworlds.counting import counted
 
 if TYPE_CHECKING:
@@ -103,16 +103,6 @@ def _by_place(symbol: Symbol, text: str) -> Iterator[str]:
         yield f"`{symbol.path}` takes `{rest[0]}` by name only: `{rest[0]}={given[-1]}`."
     else:
         yield f"`{symbol.path}` takes {counted_arguments(len(by_place))} by place: `{symbol.signature}`."
-
-
-def places_of(symbol: Symbol) -> tuple[list[str], list[str]] | None:
-    """The arguments that a function takes by place, and those that it takes by name only; None where that is open."""
-    listed = signature_arguments(symbol.signature)
-    if listed is None or listed.vararg or listed.kwarg:
-        return None
-    own = {"self", "cls"} - {parameter.name for parameter in symbol.parameters}
-    names = [argument.arg for argument in (*listed.posonlyargs, *listed.args) if argument.arg not in own]
-    return names, [argument.arg for argument in listed.kwonlyargs]
 
 
 def counted_arguments(places: int) -> str:

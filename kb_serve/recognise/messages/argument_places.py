@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.code.wrong_arguments import counted_arguments, places_of
+from kb_serve.recognise.code.wrong_arguments import counted_arguments
+from kb_serve.signatures import places_of
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import OPERATORS
-from kb_build.symbols.paths import plain_path
+from kb_build.symbols.paths import last_name, plain_path
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.names.likely_values import likely_values
 
@@ -63,7 +63,7 @@ class Values:
             owners = self._enum_values.taking(items, called)
             if _OF_CLASSES in query:
                 owners = self._of_classes(owners) or owners
-            owners = owners[:_MOST_OWNERS]
+            owners = self._meant_first(owners[:_MOST_OWNERS], match["name"], items, query)
             for rank, owner in enumerate(owners[:2]):
                 recognition.add(plain_path(owner), 0.95 - 0.02 * rank, "error message")
             likely = self._enum_values.as_likely_as_the_first(owners, items)
@@ -77,6 +77,18 @@ class Values:
                 recognition.add_removed(removed)
             elif similar := _closest(match["name"], re.findall(r"'([^']+)'", match["items"])):
                 recognition.notes.append(_NO_ITEM.format(name=match["name"], similar=similar))
+
+    def _meant_first(self, owners: Sequence[str], value: str, items: Sequence[str], query: str) -> list[str]:
+        """Owners, likeliest first; before them what code beside the message sets, and of equally likely ones those
+        that take the value somewhere.
+        """
+        having = [
+            owner
+            for owner in self._enum_values.as_likely_as_the_first(owners, items)
+            if self._enum_values.has(owner, value)
+        ]
+        written = [owner for owner in owners if f".{last_name(owner)} =" in query]
+        return list(dict.fromkeys((*written, *having, *owners)))
 
     def _notes(self, owners: Sequence[str], name: str, items: Sequence[str]) -> Iterator[str]:
         """What may be said of a value that is not among the items in a message, the surest first; empty for nothing."""

@@ -56,6 +56,14 @@ class RemovedSymbol:
         """The paths that take its place, best first."""
         return tuple(successor.target for successor in self.successors if successor.target)
 
+    def renamed_argument(self, call: str) -> tuple[str, str] | None:
+        """(its name, what a function or operator has in its place), where that is one argument and no more is told."""
+        old, targets = argument_of(self.path), self.targets
+        if not old or len(targets) != 1 or self.successors[0].how:
+            return None
+        new = argument_of(targets[0])
+        return (old, new) if new and plain_path(targets[0]) == call and not item_of(targets[0]) else None
+
     @property
     def without_successor(self) -> bool:
         """Whether it is known that nothing takes its place."""

@@ -12,7 +12,7 @@ from kb_build.index.analysis import key
 from kb_build.symbols.api_names import COLLECTION, GROUPS, NODE, OBJECT, OPERATORS, SIDES, STRUCT, TYPES
 from kb_build.symbols.paths import is_socket
 from kb_build.symbols.python_values import METHODS, python_class
-from kb_serve.recognise.code.refusals import is_listed, keywords, lacks_keyword, refuses
+from kb_serve.recognise.code.refusals import is_listed, refuses, refuses_call
 from kb_serve.recognise.names.holders import by_what_holds_it
 from kb_serve.recognise.names.operator_words import operator_of_class
 from kb_serve.recognise.resolving.chain_starts import ChainStarts
@@ -120,18 +120,18 @@ class Resolver:
         return data[0] if len(data) == 1 else ""
 
     def _taking(self, chain: Chain, readings: list[ResolvedChain]) -> list[ResolvedChain]:
-        """The readings of an unknown variable without those that refuse what the chain is set to, or a keyword that it
-        is called with, if others take it.
+        """The readings of an unknown variable without those that refuse what the chain is set to or called with, if
+        others take it.
         """
         is_set = chain.assigned and (chain.literal or chain.values)
-        if not is_set and not keywords(chain):
+        if not is_set and not chain.call:
             return readings
         guessed = [reading for reading in readings if reading.complete and reading.fit < _NAMED][:_MOST_TRIED]
         symbols = [(reading, self._reader.symbol(reading.symbols[-1])) for reading in guessed]
         refusing = [
             reading
             for reading, symbol in symbols
-            if symbol and (refuses(symbol, chain) or lacks_keyword(symbol, chain))
+            if symbol and (refuses(symbol, chain) or refuses_call(symbol, chain))
         ]
         if len(refusing) == len(guessed):
             return readings

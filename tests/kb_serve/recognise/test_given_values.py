@@ -130,3 +130,38 @@ def test_a_look_of_another_view_leads_to_that_of_this_one(kb: KnowledgeBase, val
     (note,) = kb.query(f"scene.view_settings.look = '{value}'").notes
     assert "`'AgX - High Contrast'` " in note
     assert "only with view_transform='AgX'" in note
+
+
+@pytest.mark.parametrize(
+    ("query", "note"),
+    [
+        (
+            "bpy.ops.export_scene.gltf(filepath='a', export_colors=True)",
+            "`True` is not a value of `bpy.ops.export_scene.gltf(export_vertex_color)`. It takes `'MATERIAL'`",
+        ),
+        (
+            "bpy.ops.wm.obj_export(filepath='a', axis_forward='-Z')",
+            "`'-Z'` is not a value of `bpy.ops.wm.obj_export(forward_axis)`. Closest: `'NEGATIVE_Z'`.",
+        ),
+        (
+            "bpy.ops.export_mesh.ply(filepath='a', use_colors=True)",
+            "`True` is not a value of `bpy.ops.wm.ply_export(export_colors)`. It takes `'NONE'`",
+        ),
+    ],
+)
+def test_what_took_the_place_of_a_keyword_takes_other_values(
+    kb: KnowledgeBase, query: str, note: str
+) -> None:
+    assert [one for one in kb.query(query).notes if one.startswith(note)]
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "bpy.ops.export_scene.gltf(filepath='a', export_colors='MATERIAL')",
+        "bpy.ops.wm.obj_export(filepath='a', axis_forward='NEGATIVE_Z')",
+        "bpy.ops.mesh.primitive_cube_add(radius=1)",
+    ],
+)
+def test_values_that_it_takes_as_well_are_not_denied(kb: KnowledgeBase, query: str) -> None:
+    assert not [note for note in kb.query(query).notes if "is not a value of" in note]

@@ -991,3 +991,14 @@ def test_the_function_that_a_message_names_comes_before_the_codes(kb: KnowledgeB
     )
     answer = kb.query(f"    tr2.strips.new('spin', 10.5, a2)\nTypeError: {message}")
     assert answer.hits[0].id == "bpy.types.NlaStrips.new"
+
+
+@pytest.mark.parametrize("code", ["", "    cp.target_space = 'LOCAL_OWNER_ORIENT'\n"])
+def test_a_value_that_is_taken_elsewhere_is_told_of_what_takes_it(kb: KnowledgeBase, code: str) -> None:
+    # `owner_space` has the same three values where nothing is a bone, and never this one.
+    answer = kb.query(
+        f"{code}TypeError: bpy_struct: item.attr = val: enum \"LOCAL_OWNER_ORIENT\" not found in ('WORLD', 'CUSTOM', "
+        "'LOCAL')"
+    )
+    assert answer.hits[0].id == "bpy.types.Constraint.target_space"
+    assert "is taken only by a constraint with a bone as target" in answer.notes[0]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import bpy
 import pytest
 
-from kb_serve.recognise.code.refusals import keywords, lacks_keyword, refuses
+from kb_serve.recognise.code.refusals import keywords, refuses, refuses_call
 from kb_serve.recognise.resolving.chains import find_chains
 
 if TYPE_CHECKING:
@@ -79,9 +79,37 @@ def test_the_keywords_tell_the_function(kb: KnowledgeBase, reader: BaseReader) -
     assert keywords(chain) == {"name", "start", "action"}
     other, meant = (reader.symbol(f"{T}{cls}.new") for cls in ("ActionStrips", "NlaStrips"))
     assert other is not None
-    assert lacks_keyword(other, chain)
+    assert refuses_call(other, chain)
     assert meant is not None
-    assert not lacks_keyword(meant, chain)
+    assert not refuses_call(meant, chain)
     answer = kb.query(written)
     assert answer.hits[0].id == f"{T}NlaStrips.new"
     assert answer.notes[0] == "`start` of `bpy.types.NlaStrips.new` is a whole number: `10.0` is refused."
+
+
+@pytest.mark.parametrize(
+    "written",
+    [
+        "adj.modifiers.new('CB', 'COLOR_BALANCE')",
+        "adj.modifiers.new(name='CB', type='COLOR_BALANCE')",
+        "adj.modifiers.new(name, 'COLOR_BALANCE')",
+    ],
+)
+def test_a_text_that_is_given_tells_the_function(kb: KnowledgeBase, written: str) -> None:
+    answer = kb.query(written)
+    assert answer.hits[0].id == f"{T}StripModifiers.new"
+    assert not [note for note in answer.notes if "may also stand" in note]
+
+
+def test_a_text_that_nothing_takes_tells_none(kb: KnowledgeBase) -> None:
+    answer = kb.query("thing.modifiers.new('CB', 'NO_SUCH_THING')")
+    assert answer.hits[0].id == f"{T}ObjectModifiers.new"
+
+
+def test_more_arguments_than_a_function_takes_are_refused(reader: BaseReader) -> None:
+    (chain,) = find_chains("a.new(b, c)")[:1]
+    one, two = (reader.symbol(f"{T}{cls}.new") for cls in ("FCurveModifiers", "ObjectModifiers"))
+    assert one is not None
+    assert refuses_call(one, chain)
+    assert two is not None
+    assert not refuses_call(two, chain)
