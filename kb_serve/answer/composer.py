@@ -103,8 +103,7 @@ class AnswerComposer:
         notes = tuple(dict.fromkeys(filter(None, told)))
         if not hits:
             text = "Nothing in this knowledge base matches the query. Try other words, or a name as Blender writes it."
-            told = AnswerBlock("" if ranking.recognition.removed else text)  # of those, the notes say it all
-            return draft_of("none", (), notes, (told,))
+            return draft_of("none", (), notes, (AnswerBlock("" if ranking.notes else text),))
         asked = asked_words(text)
         members = self._asked_members(hits[0], ranking.ranked, asked)
         if ranking.named:

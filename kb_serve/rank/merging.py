@@ -131,8 +131,11 @@ class QueryRanker:
         if best is not None and best.sure >= 1.0 and best.why != "successor":
             ranked = [RankedId(match.id, match.sure, match.why) for match in recognition.matches]
             return Ranking(ranked, recognition, named=True, notes=self._notes.on(recognition))
-        if recognition.dead_end:  # what the words find would pass for the successor
-            ranked = [RankedId(m.id, m.sure, m.why) for m in recognition.matches if m.sure >= SURE]
+        # What the words find would pass for the successor, or has nothing to do with it.
+        if recognition.dead_end or recognition.says_all:
+            by_chance = {"enum item"} if recognition.says_all else set[str]()
+            sure = (m for m in recognition.matches if m.sure >= SURE and m.why not in by_chance)
+            ranked = [RankedId(m.id, m.sure, m.why) for m in sure]
             return Ranking(ranked, recognition, named=False, notes=self._notes.on(recognition))
         self._meant.add(recognition)
         prose = prose_of(query)

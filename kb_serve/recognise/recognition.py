@@ -83,7 +83,8 @@ class Recognition:
     it: unlike the ``missing`` names it is right as likely as not, and nothing else is looked for.
     ``notes`` are further sentences for the caller. ``alike`` are the members of the surest one's name that other things
     have for which the query's variable may stand, ``alike_lost`` that variable, and one that a likelier thing had.
-    ``is_open`` tells that the query does not say which of several operators it is about.
+    ``is_open`` tells that the query does not say which of several operators it is about, ``says_all`` that what it is
+    about is none of Blender's: words of it are found only by chance.
     """
 
     matches: list[RecognisedName] = field(default_factory=list)
@@ -98,6 +99,7 @@ class Recognition:
     alike: list[str] = field(default_factory=list)
     alike_lost: tuple[str, RemovedSymbol] | None = None
     is_open: bool = False
+    says_all: bool = False
 
     def add(self, identifier: str, sure: float, why: Why) -> None:
         """Adds a match, or raises the certainty of the one with the same id."""

@@ -41,7 +41,7 @@ from kb_serve.recognise.resolving.subscripts import CustomProperties
 from kb_serve.recognise.resolving.variables import USUAL, usual_classes
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader, SymbolEntry
@@ -170,14 +170,15 @@ class Expressions:
             return
         code.sort(key=lambda chain: chain.leads_on)
         prose = said_in_words(chains)
-        is_script = len(code) > 1 and any(chain.steps or chain.assigned for chain in code)
-        for position, chain in enumerate(code):
+        are_several = len(code) > 1
+        is_script = are_several and any(chain.steps or chain.assigned for chain in code)
+        for position, chain in enumerate(_without_denied(code, recognition)):
             later = 0.02 * min(position, 5)
             readings = self._taking(chain, self._resolver.resolve(chain))
             if taken_as := self._old.still_taken(chain, readings):
                 recognition.add_former_name(taken_as, 0.97 - later)
                 continue
-            variable = not chain.steps and (chain.assigned or len(code) > 1)
+            variable = not chain.steps and (chain.assigned or are_several)
             if not variable and (old := self._old.in_chain(chain, readings)):
                 if not chain.assigned:
                     old = replace(old, removed=for_reading(old.removed))
@@ -369,3 +370,19 @@ class Expressions:
         for step, symbol in enumerate(reversed(resolved.symbols[:-1])):
             recognition.add(symbol, 0.5 - 0.05 * step - later, "on the way")
         return True
+
+
+def _without_denied(chains: Iterable[Chain], recognition: Recognition) -> Iterator[Chain]:
+    """Chains without those that end with a name which a message denies to a class: the variable is of that class, and
+    nothing else that has or had the name is meant. How the code uses it is kept.
+    """
+    denied = {missing.name: place for place, missing in enumerate(recognition.missing) if missing.sure}
+    for chain in chains:
+        name = chain.attributes[-1] if chain.attributes else ""
+        if name not in denied:
+            yield chain
+            continue
+        place = denied[name]
+        recognition.missing[place] = replace(
+            recognition.missing[place], assigned=chain.assigned, called=chain.call is not None
+        )

@@ -57,4 +57,7 @@ class Attributes:
         elif owner in PYTHONS:
             self._python_types.explain(owner, name, recognition)
         else:
-            self._lacking_owners.explain(owner, name, recognition, of_module=of_module)
+            meant = forms.MEANT.search(query)
+            self._lacking_owners.explain(
+                owner, name, recognition, of_module=of_module, meant=meant["name"] if meant else ""
+            )

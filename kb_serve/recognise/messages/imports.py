@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import sys
 from typing import TYPE_CHECKING
 
 from kb_serve.recognise import message_patterns as forms
@@ -13,6 +15,13 @@ if TYPE_CHECKING:
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 
 _IMPORTABLE = frozenset({"class", "function", "data"})
+_IMPORTED = "`{name}` must be imported first: `{how}`."
+_OWN_NAME = (
+    "The script uses `{name}` before it sets, defines or imports it, or spells it otherwise there: Blender gives it no "
+    "such name."
+)
+_SHORTEST = 2  # letters of a name in ``math`` that scripts import by itself
+_NOT_BLENDERS = {"np": "import numpy as np", "numpy": "import numpy", "Path": "from pathlib import Path"}
 _HAS_FILE = "SELECT 1 FROM uses WHERE file = ? OR file LIKE ? LIMIT 1"
 
 
@@ -51,10 +60,12 @@ class Imports:
             return
         entry = self._public(name)
         if entry is None:
+            recognition.notes.append(_of_python(name) or _OWN_NAME.format(name=name))
+            recognition.says_all = True
             return
         recognition.add(entry.path, 0.98, "error message")
         how = f"import {name}" if entry.kind == "module" else f"from {entry.owner} import {name}"
-        recognition.notes.append(f"`{name}` must be imported first: `{how}`.")
+        recognition.notes.append(_IMPORTED.format(name=name, how=how))
 
     def _public(self, name: str) -> SymbolEntry | None:
         """The module of that name, or what a module has of it that counts most; None for a name that tells nothing."""
@@ -74,3 +85,13 @@ class Imports:
         if removed:
             recognition.add_removed(removed)
         return removed is not None
+
+
+def _of_python(name: str) -> str:
+    """How a name is imported that is Python's own, or of a package that comes with Blender; empty for others."""
+    how = _NOT_BLENDERS.get(name, "")
+    if not how and name in sys.stdlib_module_names:
+        how = f"import {name}"
+    if not how and len(name) >= _SHORTEST and hasattr(math, name):
+        how = f"from math import {name}"
+    return _IMPORTED.format(name=name, how=how) if how else ""

@@ -1,4 +1,4 @@
-"""Explains messages of elements that a collection does not have at an index."""
+"""Explains messages of elements that a collection or an array does not have at an index."""
 
 from __future__ import annotations
 
@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 _BMESH = "bmesh.types.BMesh"
 _SEQUENCES = ("verts", "edges", "faces")
+_ELEMENTS = (
+    "`{name}` has {size} elements, each animated by itself: the index is 0 to {last}; without one all are."
+)
 _ADD = ("new", "append", "add", "link")  # functions of collections
 
 
@@ -26,10 +29,12 @@ class Indices:
         self._reader = reader
 
     def explain(self, query: str, recognition: Recognition) -> None:
-        """Adds how many elements there are, and what adds one."""
+        """Adds how many elements there are, and what adds one to a collection."""
         for match in forms.first_matches(forms.NO_INDEX, query):
             recognition.notes.append(self._index(match["index"], int(match["size"]), query, recognition))
             recognition.add(COLLECTION, 0.81, "error message")
+        for match in forms.first_matches(forms.NO_ELEMENT, query):
+            recognition.notes.append(_ELEMENTS.format(last=int(match["size"]) - 1, **match.groupdict()))
         if forms.OUTDATED.search(query):
             self._outdated(query, recognition)
 

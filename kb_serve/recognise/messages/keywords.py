@@ -10,6 +10,7 @@ from kb_build.symbols.paths import argument_of, plain_path
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.code.wrong_arguments import unknown_keywords
 from kb_serve.recognise.names.corrections import nearest
+from kb_serve.recognise.names.likely_keywords import EMPTY_WORDS
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
@@ -99,7 +100,8 @@ class Keywords:
             }
         )
         if not taking and not recognition.removed:
-            words = [near for near, _ in nearest(name, self._reader.operator_arguments, _FEW)]
+            similar = (near for near, _ in nearest(name, self._reader.operator_arguments, _FEW))
+            words = [near for near in similar if near not in EMPTY_WORDS]
         for word in words:
             others = self._reader.operators_taking(word) if word != name else []
             if not others:

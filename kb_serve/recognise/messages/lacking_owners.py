@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kb_build.index.analysis import words
 from kb_build.symbols.api_names import ID, TYPES
 from kb_serve.recognise.messages.context_members import note_on_absent
 from kb_serve.recognise.names.elements import elsewhere
 from kb_serve.recognise.names.members_within import members_within
+from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.recognition import MissingName
 
 if TYPE_CHECKING:
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 
 _OF_NO_BLOCK = frozenset({"BlendData", "Context", "Depsgraph", "Event"})
+_OF_ALL = 1 / 2  # the share of the words of two names from which on they say the same
 _INSTANCES = {"RNA_Types": "bpy.types", "bpy_types": "bpy.types", "BPyOps": "bpy.ops", "_bpy": "bpy"}
 _PROPERTIES, _OPERATOR = "bpy.props", f"{TYPES}Operator"
 _OWN_CLASS = (
@@ -41,10 +44,13 @@ class LackingOwners:
         self._removed = removed
         self._symbols = symbols
 
-    def explain(self, written: str, name: str, recognition: Recognition, *, of_module: bool) -> None:
+    def explain(
+        self, written: str, name: str, recognition: Recognition, *, of_module: bool, meant: str = ""
+    ) -> None:
         """Adds what became of the attribute, or the owner, and what it leads to that has the attribute.
 
-        ``of_module`` tells that the message is of a module, which no other is.
+        ``of_module`` tells that the message is of a module, which no other is; ``meant`` is what Python says was meant,
+        by spelling alone, or empty.
         """
         owner = _INSTANCES.get(written) or self._symbols.class_path(written, or_module=of_module)
         module = self._reader.entry(f"{owner}.{name}") if owner else None
@@ -70,6 +76,9 @@ class LackingOwners:
         elif owner:
             recognition.missing.append(MissingName(name, owner, sure=True))
             recognition.add(owner, 0.6, "error message")
+            own = self._reader.member_of(owner, meant) if _says_the_same(name, meant) else None
+            if own:
+                recognition.add(own.path, 0.97, SIMILAR)
             if other := elsewhere(owner, name, self._reader):
                 recognition.notes.append(other.how)
                 recognition.add(other.path, 0.98, "error message")
@@ -107,3 +116,9 @@ class LackingOwners:
             recognition.notes.append(
                 f"The data-block that it is part of has it: `.id_data.{name}` (`{of_block.path}`)."
             )
+
+
+def _says_the_same(name: str, other: str) -> bool:
+    """Whether two names have half of their words in common."""
+    mine, theirs = set(words(name)), set(words(other))
+    return bool(other) and len(mine & theirs) >= _OF_ALL * len(mine | theirs)

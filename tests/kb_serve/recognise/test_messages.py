@@ -1002,3 +1002,49 @@ def test_a_value_that_is_taken_elsewhere_is_told_of_what_takes_it(kb: KnowledgeB
     )
     assert answer.hits[0].id == "bpy.types.Constraint.target_space"
     assert "is taken only by a constraint with a bone as target" in answer.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("name", "how"),
+    [
+        ("math", "import math"),
+        ("radians", "from math import radians"),
+        ("np", "import numpy as np"),
+        ("Path", "from pathlib import Path"),
+    ],
+)
+def test_a_name_of_pythons_library_is_told_with_its_import(kb: KnowledgeBase, name: str, how: str) -> None:
+    answer = kb.query(f"NameError: name '{name}' is not defined")
+    assert answer.notes == (f"`{name}` must be imported first: `{how}`.",)
+    assert not answer.hits
+
+
+def test_a_name_that_the_script_lacks_is_not_looked_for_in_blender(kb: KnowledgeBase) -> None:
+    answer = kb.query("NameError: name 'bake_mesh_6' is not defined")
+    assert not answer.hits
+    assert answer.notes[0].startswith("The script uses `bake_mesh_6` before")
+    line = "bpy.ops.mesh.primitive_cube_add(size=s)\nNameError: name 's' is not defined"
+    assert [hit.id for hit in kb.query(line).hits] == ["bpy.ops.mesh.primitive_cube_add"]
+
+
+@pytest.mark.parametrize("caller", ["driver_add", "keyframe_insert"])
+def test_an_index_beyond_an_array_is_told_with_the_right_ones(kb: KnowledgeBase, caller: str) -> None:
+    answer = kb.query(
+        f'TypeError: bpy_struct.{caller}(): index out of range "location", given 5, array length is 3'
+    )
+    assert answer.hits[0].id == f"bpy.types.bpy_struct.{caller}"
+    assert "the index is 0 to 2" in answer.notes[0]
+
+
+def test_the_class_that_a_message_names_decides_what_a_variable_is(kb: KnowledgeBase) -> None:
+    answer = kb.query("    h.falloff = 1.0\nAttributeError: 'HookModifier' object has no attribute 'falloff'")
+    assert answer.hits[0].id == "bpy.types.HookModifier.falloff_radius"
+    assert not [note for note in answer.notes if "LightProbe" in note]
+
+
+def test_what_python_says_was_meant_comes_first_where_it_says_the_same(kb: KnowledgeBase) -> None:
+    answer = kb.query(
+        "AttributeError: 'RigidBodyConstraint' object has no attribute 'use_spring_rot_x'. Did you mean: "
+        "'use_spring_ang_x'?"
+    )
+    assert answer.hits[0].id == "bpy.types.RigidBodyConstraint.use_spring_ang_x"
