@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.parse import parsed
 from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.paths import last_name
 from kb_check.beside import checker_beside
 from kb_check.source import split_lines
 from kb_check.summary import mended
 from kb_serve.reader import UNLIMITED
 from kb_serve.recognise.code.wrong_values import NO_VALUE
+from kb_serve.recognise.names.corrections import is_misspelling
 from kb_serve.recognise.removed.lost_names import is_telling
 from kb_serve.recognise.resolving.variables import is_guess, usual_classes
 
@@ -49,6 +51,13 @@ _NO_VALUE = "unknown-value"
 _IS_NONE = re.compile(NO_VALUE)  # what is said of a value that no Blender has
 _ARGUMENT = "("  # in the path of an argument: of the values of properties an answer tells by itself
 _GONE = "unknown-attribute"  # what is wrong behind a name that is gone, its successor may take otherwise
+_NAMES = (
+    _GONE,
+    "unknown-operator",
+)  # of which an answer tells but where they are texts: ``layout.prop(ob, "locaton")``
+_ANIMATED = re.compile(r"\.(?:keyframe|driver)_\w+\(")  # of their paths an answer tells, too
+_OF_CLASS = re.compile(r"\s*bl_\w+\s*=")
+_QUOTES = ("'", '"')
 _SIGNS = "=([*"  # one of which such code has
 _LOG = logging.getLogger(__name__)
 # What code does that is more than a name.
@@ -73,7 +82,7 @@ def notes_on_code(reader: BaseReader, query: str) -> tuple[str, ...]:
     lines = split_lines(code)
     try:
         with reader.bounded(UNLIMITED):  # each line of the code may take as much as a query
-            findings = [*_news(checker.check(code, rules=(*_RULES, _NEVER_TRUE, _GONE)))]
+            findings = [*_news(checker.check(code, rules=(*_RULES, _NEVER_TRUE, *_NAMES)), lines)]
     except sqlite3.DatabaseError as error:
         raise checker.names.reader.damaged(error) from error
     except Exception as error:  # what goes wrong with a rule takes no answer with it
@@ -166,18 +175,32 @@ def _having(name: str, attributes: Collection[str], reader: BaseReader) -> list[
     return []
 
 
-def _news(findings: Sequence[Finding]) -> Iterator[Finding]:
-    """Errors in the code itself, but for names that are gone, and what is wrong behind one of those in its line."""
+def _news(findings: Sequence[Finding], lines: Sequence[str]) -> Iterator[Finding]:
+    """Errors in the code itself, but for names that are gone, and what is wrong behind one of those in its line.
+
+    Of names that are texts, and of the values of a class's own attributes, an answer does not tell. A text that is no
+    misspelling may be the name of what an add-on registers.
+    """
     gone = {finding.span.line: finding.span.column for finding in findings if finding.absent}
     for finding in findings:
         span = finding.span
         is_behind = span.line in gone and gone[span.line] < span.column
-        is_value = finding.rule == _NO_VALUE and _ARGUMENT in finding.symbol
+        line = lines[span.line - 1]
+        is_text = line[span.column : span.column + 1] in _QUOTES and not _ANIMATED.search(line)
+        is_text = is_text and finding.rule in _NAMES and _is_misspelt(finding)
+        is_value = finding.rule == _NO_VALUE and (_ARGUMENT in finding.symbol or bool(_OF_CLASS.match(line)))
         is_value = is_value and _IS_NONE.search(finding.message) is not None
-        is_told = finding.rule == _GONE or (bool(finding.absent) and not is_value) or is_behind
+        is_name = finding.rule in _NAMES or bool(finding.absent)
+        is_told = (is_name and not (is_value or is_text)) or is_behind
         is_wrong = finding.severity == "error" or is_value or finding.rule == _NEVER_TRUE
         if is_wrong and span.line > 1 and not is_told:
             yield finding
+
+
+def _is_misspelt(finding: Finding) -> bool:
+    """Whether a name that Blender lacks is one of its names, misspelt."""
+    lacked, *closest = map(last_name, _SPAN.findall(finding.message)[1:])
+    return any(is_misspelling(lacked, name) for name in closest)
 
 
 def _note(finding: Finding, lines: list[str]) -> str:

@@ -232,9 +232,10 @@ def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
 
 
 def _takes_other_things(script: Script, call: CallSite, parameter: Parameter, value: ast.expr) -> bool:
-    """Whether a parameter takes a thing that a value surely is not: what is given was meant of another."""
+    """Whether a parameter takes what a value surely is not: what is given was meant of another."""
     taker = parameter_taker(script, call.callee.symbol, parameter, is_rna=call.callee.is_rna)
-    return taker.kind == "pointer" and misfit(script, taker, value) is not None
+    # One item of a set of several becomes a set by the fix.
+    return taker.kind != "set" and misfit(script, taker, value) is not None
 
 
 def _by_place(script: Script, call: CallSite) -> Fix | None:

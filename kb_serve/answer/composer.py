@@ -41,8 +41,10 @@ _KNOWN_OF = 3  # hits for a description among which what one has to know of them
 _NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
 _SETTINGS = 2  # of a topic that are hits before its classes
 _LONGEST_WORD = 100  # no name of Blender's has as many letters
+_INSTEAD = " Write `"
 _OPERATOR = re.compile(r"bpy\.ops\.\w+\.\w+")
 _COMMENT = re.compile(r"(?:^|(?<=\s))#\s[^\n]*\n", re.MULTILINE)  # of code, of which lines are joined
+_DOCSTRING = re.compile(r"(:\s*\n\s*)(?:\"{3}.*?\"{3}|'{3}.*?'{3})", re.DOTALL)
 _LONG_WORD = re.compile(rf"(\w{{{_LONGEST_WORD}}})\w+")
 
 
@@ -80,10 +82,12 @@ class AnswerComposer:
 
     def _draft_with_notes(self, query: str, limit: int) -> Draft:
         told = self._notes_on_code(self._reader, query)
-        return with_notes(told, self._make_draft(_in_one_line(query), limit))
+        return with_notes(told, self._make_draft(_in_one_line(query), limit, told))
 
-    def _make_draft(self, text: str, limit: int) -> Draft:
+    def _make_draft(self, text: str, limit: int, told: Sequence[str]) -> Draft:
+        """The answer to a text of whose code ``told`` is said as well."""
         ranking = self._ranker.rank(text, limit)
+        ranking.notes = [note for note in ranking.notes if not _is_said(note, told)]
         is_name = (" " not in text or "[" in text) and self._reader.entry(text)
         topic = "" if is_name else self._topics.find(text)
         if topic:
@@ -99,8 +103,8 @@ class AnswerComposer:
             if ranking.notes
             else self._known(hits[:1] if ranking.named else hits[:_KNOWN_OF], text, is_named=ranking.named)
         )
-        told = (*ranking.notes, *known, ranking.alike, *self._source_notes(ranking, hits))
-        notes = tuple(dict.fromkeys(filter(None, told)))
+        said = (*ranking.notes, *known, ranking.alike, *self._source_notes(ranking, hits))
+        notes = tuple(dict.fromkeys(filter(None, said)))
         if not hits:
             text = "Nothing in this knowledge base matches the query. Try other words, or a name as Blender writes it."
             return draft_of("none", (), notes, (AnswerBlock("" if ranking.notes else text),))
@@ -264,10 +268,17 @@ class AnswerComposer:
 
 
 def _in_one_line(query: str) -> str:
-    """A query without what no base holds: comments of code, lone surrogates, words longer than any name."""
-    text = _COMMENT.sub("", query).strip() or query
+    """A query without what no base holds: docstrings and comments of code, lone surrogates, endless words."""
+    text = _COMMENT.sub("", _DOCSTRING.sub(r"\1", query)).strip() or query
     text = " ".join(text.encode(errors="ignore").decode().replace("\0", " ").split())
     return _LONG_WORD.sub(r"\1", text)
+
+
+def _is_said(note: str, told: Sequence[str]) -> bool:
+    """Whether other notes say what a note does, and what to write as well as it does."""
+    what, mark, how = note.partition(" by name only")
+    same = [other for other in told if mark and f"{what}{mark}" in other]
+    return any(_INSTEAD in other or "=" not in how for other in same)
 
 
 def _is_told(path: str, text: str) -> bool:

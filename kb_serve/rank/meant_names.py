@@ -9,6 +9,7 @@ from kb_build.symbols.paths import last_name
 from kb_serve.rank.meant_members import MeantMembers, meant_members
 from kb_serve.recognise.names.corrections import is_misspelling
 from kb_serve.recognise.names.data_of_others import data_of_others
+from kb_serve.recognise.names.members_within import OF_ELEMENTS
 from kb_serve.recognise.notes import SIMILAR
 
 if TYPE_CHECKING:
@@ -35,10 +36,15 @@ class MeantNames:
     def add(self, recognition: Recognition) -> None:
         """Adds what may be meant by the first name that its class lacks."""
         missing = next((one for one in recognition.missing if one.owner), recognition.doubted)
-        is_found = recognition.removed or any(match.why == "within" for match in recognition.matches)
-        if missing is None or is_found or not missing.name.isidentifier():
+        within = [match for match in recognition.matches if match.why == "within"]
+        of_elements = any(note.startswith(OF_ELEMENTS) for note in recognition.notes)
+        if missing is None or recognition.removed or not missing.name.isidentifier():
+            return
+        if within and not of_elements:
             return
         meant = self._meant(missing, recognition)
+        if within and not self._is_rather_own(missing.name, meant):
+            return
         others = data_of_others(missing, self._reader)
         if others and self._is_of_others(others, meant, missing.name):
             _add_of_others(others, recognition)
@@ -57,6 +63,12 @@ class MeantNames:
         if alike:
             return MeantMembers(alike, clear=True)
         return meant_members(missing, self._searcher(), self._reader)
+
+    def _is_rather_own(self, name: str, meant: MeantMembers) -> bool:
+        """Whether a member of the thing itself is clearly meant, as its name begins with one that its elements have:
+        ``frame_current`` of a scene, not the frame of its markers.
+        """
+        return meant.clear and last_name(meant.paths[0]).startswith(f"{name}_")
 
     def _is_of_others(self, others: DataOfOthers, meant: MeantMembers, name: str) -> bool:
         """Whether a name means what another type of object has, rather than what its own data has: nothing called so,
@@ -85,7 +97,7 @@ def _add_meant(meant: MeantMembers, missing: MissingName, recognition: Recogniti
     beside = [
         match.sure
         for match in recognition.matches
-        if match.id == missing.owner or match.why in {"enum item", "name"}
+        if match.id == missing.owner or match.why in {"enum item", "name", "within"}
     ]
     sure = max([_MEANT, *(one + (_BEFORE if meant.clear else -_BEFORE) for one in beside)])
     if missing is recognition.doubted:

@@ -12,6 +12,8 @@ from kb_build.symbols.api_names import ID, OPERATORS, TYPES
 from kb_build.symbols.paths import last_name, plain_path, socket_node
 from kb_serve.recognise.code.contexts import NO_OVERRIDE, OVERRIDE
 from kb_serve.recognise.code.expressions import Expressions
+from kb_serve.recognise.code.operator_properties import explain_properties
+from kb_serve.recognise.code.own_names import own_names
 from kb_serve.recognise.code.products import WITH_AT, Products
 from kb_serve.recognise.code.python_methods import is_method_of_python
 from kb_serve.recognise.code.refusals import keywords
@@ -115,7 +117,8 @@ class Recogniser:
     def recognise(self, query: str) -> Recognition:
         """Everything that ``query`` names, surest first."""
         recognition = Recognition()
-        chains = with_bindings(query, find_chains(query))
+        own = own_names(query)
+        chains = own.without(with_bindings(query, find_chains(query)))
         recognition.notes += (
             _UNKNOWN_MODULE.format(version=self._reader.meta.get("minor", ""), module=module)
             for module in sorted(self._reader.unknown_modules.intersection(tokens(query)))
@@ -128,7 +131,7 @@ class Recogniser:
             self._messages.recognise(query, recognition)
             text = without_callers_names(without_wording(query))
             code = _FILE_PATH.sub(" ", without_callers_names(without_wording(without_values(query))))
-            found = chains if code == query else with_bindings(code, find_chains(code))
+            found = chains if code == query else own.without(with_bindings(code, find_chains(code)))
             self._expressions.recognise(found, recognition)
             self._enum_values.recognise(text, recognition, classes_of_things(query))
             self._removed_values(text, recognition)
@@ -139,11 +142,13 @@ class Recogniser:
         if not is_settled:
             self._values_of_nothing(query, recognition)
         self._messages.explain(query, recognition)
+        explain_properties(chains, recognition, self._removed, self._reader)
         old = next((match.id for match in recognition.matches if match.sure >= _SURE), "")
         if (name := name_on_an_old_node(old)) and last_name(socket_node(old)) not in query:
             tell_of_the_newer_node(name, self._reader, recognition)
         tell_of_the_newer_mix(old, self._reader, recognition)
         self._explain_removed(recognition, is_refused_value=BAD_ENUM.search(query) is not None)
+        recognition.missing = [missing for missing in recognition.missing if not own.have(missing)]
         self._explain_missing(recognition)
         recognition.matches.sort(key=lambda match: (-match.sure, match.why != "successor"))
         return recognition

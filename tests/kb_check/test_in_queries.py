@@ -154,3 +154,30 @@ def test_statements_of_blenders_own_scripts_are_left_alone(kb: KnowledgeBase) ->
     )
     chosen = random.Random(5).sample(statements, examples(4_000))
     assert [(text, notes) for text in chosen if (notes := notes_on_code(kb.reader, text))] == []
+
+
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        ('layout.prop(context.object, "locaton")', "Closest: `location`."),
+        ('layout.operator("object.delet")', "Closest: `object`, `object.delete`."),
+        ("class A(bpy.types.Panel):\n    bl_region_type = 'SIDEBAR'", "'SIDEBAR' is not a value of"),
+        ("class A(bpy.types.Operator):\n    bl_options = {'UNDO_PUSH'}", "'UNDO_PUSH' is not a value of"),
+    ],
+)
+def test_misspelt_texts_and_values_of_class_attributes_are_told(
+    kb: KnowledgeBase, code: str, told: str
+) -> None:
+    assert any(told in note for note in kb.query(code).notes)
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "layout.prop(context.scene, 'my_prop')",
+        "layout.operator('object.my_thing')",
+        "layout.operator('my.thing')",
+    ],
+)
+def test_what_an_add_on_may_register_is_not_denied(kb: KnowledgeBase, code: str) -> None:
+    assert kb.query(code).notes == ()

@@ -68,7 +68,9 @@ _MADE_BY_CALL = ("mathutils.", "bmesh.types.", TYPES)
 
 # Python's own names, which are not Blender's API.
 _NOT_API = frozenset({*dir(builtins), "NoneType"})
-_OTHERS_MODULES = frozenset({"np", "numpy", "pd", "plt", "torch", "cv2"})  # that scripts use beside Blender's
+_OTHERS_MODULES = frozenset(
+    {"np", "numpy", "pd", "plt", "torch", "cv2", "Path"}
+)  # that scripts use beside Blender's
 _PYTHON_MODULES = {
     module.__name__: module for module in (itertools, json, logging, math, os, pathlib, random, re, sys, time)
 }

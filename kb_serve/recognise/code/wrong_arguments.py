@@ -12,15 +12,21 @@ from kb_serve.recognise.names.set_elsewhere import set_elsewhere
 from kb_serve.recognise.resolving.call_texts import arguments
 from kb_serve.signatures import places_of
 from simworlds.counting import counted
+from simworlds.releases import version_key
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Mapping
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.resolving.chains import Chain
 
+_FEW = 4  # arguments that are all named
+_WITHOUT_CONTEXTS = (4, 0)  # the version since which operators take no dictionary
 _VALUE = re.compile(r"""(["'])[^"']*\1|-?[\d.]+""")  # a text, a number
+_NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)")
+# Types of parameters as RNA and as docstrings call them.
+_TEXTS, _TRUTHS, _NUMBERS = {"string", "str"}, {"boolean", "bool"}, {"int", "float"}
 _FRACTION = re.compile(r"-?(?:\d+\.\d*|\.\d+)")
 _EXECUTION_CONTEXT = re.compile(r"(?:INVOKE|EXEC)_\w+")
 
@@ -37,7 +43,13 @@ def unknown_keywords(symbol: Symbol, given: Mapping[str, str], reader: BaseReade
         if closest := likely_parameters(symbol, name, value):
             yield f"`{symbol.path}` {takes}; closest: {', '.join(f'`{other}`' for other in closest)}."
         else:
-            yield f"`{symbol.path}` {takes}. {set_elsewhere(symbol, name, reader)}".rstrip()
+            told = set_elsewhere(symbol, name, reader) or _all_of(known)
+            yield f"`{symbol.path}` {takes}. {told}".rstrip()
+
+
+def _all_of(names: Sequence[str]) -> str:
+    """A sentence that names all arguments, where they are few."""
+    return f"It takes {', '.join(f'`{name}`' for name in names)}." if 0 < len(names) <= _FEW else ""
 
 
 def wrong_arguments(
@@ -49,7 +61,15 @@ def wrong_arguments(
         return
     text = chain.call
     once = {name for above, mark, name in map(split_path, removed) if mark == "(" and above == symbol.path}
-    if symbol.kind == "operator" and _gives_context(text, once.union(one.name for one in symbol.parameters)):
+    takes_contexts = version_key(reader.meta.get("minor", "")) < _WITHOUT_CONTEXTS
+    of_context = (
+        symbol.kind == "operator"
+        and not takes_contexts
+        and _gives_context(text, once.union(one.name for one in symbol.parameters))
+    )
+    if of_context and not chain.attributes:
+        return  # a function of the script's own that is called as an operator is: ``add_object(self, context)``
+    if of_context:
         line = with_context(chain)
         yield f"{NO_OVERRIDE} Write `{line}`." if line else NO_OVERRIDE
     elif symbol.kind == "operator":
@@ -99,10 +119,23 @@ def _by_place(symbol: Symbol, text: str) -> Iterator[str]:
     if len(given) <= len(by_place):
         return
     rest = [name for name in by_name if name not in {name for name, _ in written}]
+    fitting = [name for name in rest if _may_be(given[-1], symbol, name)]
     if len(given) == len(by_place) + 1 and rest:
-        yield f"`{symbol.path}` takes `{rest[0]}` by name only: `{rest[0]}={given[-1]}`."
+        how = f": `{fitting[0]}={given[-1]}`" if fitting else ""
+        names = ", ".join(f"`{name}`" for name in rest)
+        yield f"`{symbol.path}` takes {names} by name only{how}."
     else:
         yield f"`{symbol.path}` takes {counted_arguments(len(by_place))} by place: `{symbol.signature}`."
+
+
+def _may_be(written: str, symbol: Symbol, name: str) -> bool:
+    """Whether an argument may be meant by what is written at a place behind the last one: a literal of its type."""
+    kind = next((one.type for one in symbol.parameters if one.name == name), "")
+    if written[:1] in "'\"":
+        return kind in _TEXTS
+    if written in {"True", "False"}:
+        return kind in _TRUTHS
+    return bool(_NUMBER.fullmatch(written)) and kind in _NUMBERS
 
 
 def counted_arguments(places: int) -> str:

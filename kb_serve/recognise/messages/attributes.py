@@ -38,6 +38,10 @@ class Attributes:
         """Adds the owner without the attribute, or what may have been meant."""
         for pattern in (forms.HAS_NO, forms.TYPE_HAS_NO, forms.MODULE_HAS_NO):
             for match in forms.first_matches(pattern, query):
+                if pattern is forms.TYPE_HAS_NO and self._lacking_owners.tell_of_instances(
+                    match["owner"], match["name"], recognition
+                ):
+                    continue
                 of_module = pattern is forms.MODULE_HAS_NO
                 self._explain(match["owner"], match["name"], query, recognition, of_module=of_module)
         for match in forms.first_matches(forms.NOT_IN_COLLECTION, query):

@@ -16,7 +16,13 @@ _FREED = (
     "The variable's data was removed, freed, or moved by an undo or by adding another element: look it up again by "
     "name."
 )
+_NOT_MADE = (
+    "Blender has no class `{cls}`. If it is one of the script's own that defines `__init__`, that has to begin with "
+    "`super().__init__(*args, **kwargs)` and to take `self, *args, **kwargs`: without it the instance holds nothing, "
+    "and each attribute of Blender's says that it was removed."
+)
 _PASSING = "DepsgraphObjectInstance"
+_INSTANCES = f"{TYPES}bpy_struct"
 _PASSED = (
     "Such an instance is there only until the loop goes on: take what is needed inside the loop "
     "(`instance.matrix_world.copy()`, `instance.object.name`); `list(depsgraph.object_instances)` keeps none."
@@ -39,6 +45,10 @@ class FreedData:
             if match["type"] == _PASSING:
                 recognition.notes.append(_PASSED)
                 recognition.add(f"{TYPES}Depsgraph.object_instances", 0.95, "error message")
+                continue
+            if not match["module"] and self._reader.entry(TYPES + match["type"]) is None:
+                recognition.notes.append(_NOT_MADE.format(cls=match["type"]))
+                recognition.add(_INSTANCES, 0.95, "error message")
                 continue
             recognition.notes.append(_FREED_MESH if match["module"] else _FREED)
             add_guide(ON_FREED, self._reader, recognition)

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import words
 from kb_build.symbols.api_names import ID, TYPES
 from kb_serve.recognise.messages.context_members import note_on_absent
+from kb_serve.recognise.names.corrections import is_misspelling
 from kb_serve.recognise.names.elements import elsewhere
 from kb_serve.recognise.names.members_within import members_within
+from kb_serve.recognise.names.operator_words import operator_of_class
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.recognition import MissingName
 
@@ -25,10 +27,16 @@ _INSTANCES = {"RNA_Types": "bpy.types", "bpy_types": "bpy.types", "BPyOps": "bpy
 _PROPERTIES, _OPERATOR = "bpy.props", f"{TYPES}Operator"
 _OWN_CLASS = (
     "Blender has no class `{cls}`. If it is one of the script's own, `{name}` is a property of it by an annotation, "
-    "with a colon (`{name}: bpy.props.IntProperty()`), before the class is registered. What `invoke()` sets on "
-    "`self` is not there where `execute()` is called alone."
+    "with a colon (`{name}: bpy.props.FloatProperty()`, or another of `bpy.props`), before the class is registered. "
+    "What `invoke()` sets on `self` is not there where `execute()` is called alone."
 )
 _NOT_IMPORTED = "`{module}` is a module of its own, to be imported first: `import {module}`."
+_OF_INSTANCES = (
+    "Instances of `{cls}` have `{name}`, the class has not. For `bpy.msgbus` the key is a pair: "
+    '`({cls}, "{name}")`.'
+)
+# What marks the names of classes that scripts register, by what these derive from.
+_MARKS = {"_OT_": "Operator", "_PT_": "Panel", "_MT_": "Menu", "_UL_": "UIList", "_HT_": "Header"}
 
 
 class LackingOwners:
@@ -52,7 +60,11 @@ class LackingOwners:
         ``of_module`` tells that the message is of a module, which no other is; ``meant`` is what Python says was meant,
         by spelling alone, or empty.
         """
-        owner = _INSTANCES.get(written) or self._symbols.class_path(written, or_module=of_module)
+        owner = (
+            _INSTANCES.get(written)
+            or self._symbols.class_path(written, or_module=of_module)
+            or self._operator(written)
+        )
         module = self._reader.entry(f"{owner}.{name}") if owner else None
         if module and module.kind == "module":
             recognition.add(module.path, 0.98, "error message")
@@ -68,9 +80,7 @@ class LackingOwners:
         if removed:
             recognition.add_removed(self._own_first(removed, owner))
         elif not owner and not of_module and written[:1].isupper() and written.isidentifier():
-            recognition.add(_PROPERTIES, 0.95, "error message")
-            recognition.add(_OPERATOR, 0.9, "error message")
-            recognition.notes.append(_OWN_CLASS.format(cls=written, name=name))
+            self._own_class(written, name, recognition)
         elif owner and (member := self._reader.member_of(owner, name)):
             self._there(member, recognition)
         elif owner:
@@ -83,6 +93,38 @@ class LackingOwners:
                 recognition.notes.append(other.how)
                 recognition.add(other.path, 0.98, "error message")
             self._of_its_block(owner, name, recognition)
+
+    def tell_of_instances(self, written: str, name: str, recognition: Recognition) -> bool:
+        """Adds what a class's instances have, and the class itself has not; whether they have it."""
+        owner = self._symbols.class_path(written, or_module=False)
+        member = self._reader.member_of(owner, name) if owner else None
+        if member is None or not member.path.startswith(TYPES):
+            return False
+        recognition.add(member.path, 0.98, "error message")
+        recognition.notes.append(_OF_INSTANCES.format(cls=owner, name=name))
+        return True
+
+    def _own_class(self, written: str, name: str, recognition: Recognition) -> None:
+        """Adds the member that is meant of the class of Blender's from which a class of the script's own derives, by
+        its name; else how it gets a property.
+        """
+        for base in _bases_of(written):
+            names = self._reader.member_names(base)
+            meant = next((other for other in names if is_misspelling(name, other)), "")
+            if member := self._reader.member_of(base, meant) if meant else None:
+                recognition.add(member.path, 0.97, "error message")
+                recognition.notes.append(
+                    f"`{base}`, of which `{written}` probably is one, has no `{name}`: `{meant}`."
+                )
+                return
+        recognition.add(_PROPERTIES, 0.95, "error message")
+        recognition.add(_OPERATOR, 0.9, "error message")
+        recognition.notes.append(_OWN_CLASS.format(cls=written, name=name))
+
+    def _operator(self, written: str) -> str:
+        """The path of the operator whose properties are of a class, ``WM_OT_call_menu``; empty for none."""
+        path = operator_of_class(written)
+        return path if path and self._reader.entry(path) else ""
 
     def _there(self, member: SymbolEntry, recognition: Recognition) -> None:
         """A member that its class has, whatever the message says: of the context it is not there everywhere."""
@@ -116,6 +158,12 @@ class LackingOwners:
             recognition.notes.append(
                 f"The data-block that it is part of has it: `.id_data.{name}` (`{of_block.path}`)."
             )
+
+
+def _bases_of(written: str) -> list[str]:
+    """The classes of Blender's of which a class is called one: ``OBJECT_PT_my``, ``MyPanel``; of others an operator."""
+    marked = [cls for mark, cls in _MARKS.items() if mark in written or written.endswith(cls)]
+    return [TYPES + cls for cls in marked or ("Operator",)]
 
 
 def _says_the_same(name: str, other: str) -> bool:

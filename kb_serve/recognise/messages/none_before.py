@@ -145,7 +145,7 @@ class NoneBefore:
 
     def _tell_absent(self, member: SymbolEntry, recognition: Recognition) -> None:
         """Adds where a thing with this member comes from that may be None."""
-        mostly = "Often" if member.owner in ANY else f"Mostly it is a `{member.owner}`"
+        mostly = "Often" if member.owner in ANY else f"It may be a `{member.owner}`"
         recognition.notes.append(_IS_NONE.format(name=member.name, of=""))
         recognition.notes.append(f"{mostly}: {self._absent.note(member.owner)}.")
         for rank, path in enumerate(self._absent.sources(member.owner)):

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from kb_serve.reader import BaseReader, SymbolEntry
 
+OF_ELEMENTS = "The elements of"  # how notes begin on what they have
 _FEW = 3
 # Parts whose members say what the same names are worth there, how it is drawn, or what is done with it: the weight of
 # gravity, the size of a baked image. None of them is what the name means of the thing.
@@ -72,7 +73,7 @@ def of_elements(collection: SymbolEntry, name: str, reader: BaseReader, before: 
     if member is None:
         return None
     access = f"{before}.{collection.name}"
-    return Within(member, f"The elements of `{access}` have it: `{access}[0].{name}` (`{member.path}`).")
+    return Within(member, f"{OF_ELEMENTS} `{access}` have it: `{access}[0].{name}` (`{member.path}`).")
 
 
 def _own_of(cls: str, name: str, reader: BaseReader) -> SymbolEntry | None:

@@ -32,6 +32,7 @@ _ITEM = re.compile(r"""(["'])(\w[\w. -]{0,60})\1""")
 _SOCKETS = re.compile(r"\.(?:in|out)puts\[['\"]")
 _QUOTES = ("'", '"')
 _DEFINED = re.compile(r"\bclass\s+\Z")
+_FUNCTION = re.compile(r"\bdef\s+\Z")
 _CLOSING = {"(": ")", "[": "]"}
 _QUOTED = re.compile(r"""^\s*[bru]?(["'])(.*)\1\s*$""", re.DOTALL)
 
@@ -51,7 +52,8 @@ class Chain:
     """A dotted expression: where it starts, and the steps from there. ``source`` is the text as typed.
 
     ``assigned`` tells whether it stands left of an assignment; ``values`` are the texts that it is set to or
-    compared with, ``literal`` is the number, truth value, None or tuple of numbers that it is set to; ``quoted``:
+    compared with, ``literal`` is the number, truth value, None or tuple of numbers that it is set to; ``defined``:
+    whether it is the name and the arguments of a function that is defined; ``quoted``:
     whether it is a text in the code, as an operator's ``bl_idname``; ``leads_on``: whether a later expression begins
     with what it gives.
     """
@@ -64,6 +66,7 @@ class Chain:
     quoted: bool = False
     leads_on: bool = False
     literal: str = ""
+    defined: bool = False
 
     @property
     def dotted(self) -> str:
@@ -83,7 +86,7 @@ class Chain:
     @property
     def call(self) -> str | None:
         """The text between the brackets of the call that it ends with; None where it ends with none."""
-        last = self.steps[-1] if self.steps else None
+        last = self.steps[-1] if self.steps and not self.defined else None
         return last.text if last is not None and last.kind == "call" else None
 
     @property
@@ -183,6 +186,7 @@ def find_chains(text: str) -> list[Chain]:
             _values(text, position) if steps else (),
             text[start - 1 : start] in _QUOTES and text[start - 1 : start] == text[position : position + 1],
             literal=_literal(text, position) if steps else "",
+            defined=bool(steps) and _FUNCTION.search(text, 0, start) is not None,
         )
         chains.append(chain)
         code += chain.is_code

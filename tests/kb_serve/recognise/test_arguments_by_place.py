@@ -12,13 +12,13 @@ if TYPE_CHECKING:
 
 # Code that Blender refuses → what is told of it.
 REFUSED = {
-    "scene.frame_set(10, 0.5)": "`bpy.types.Scene.frame_set` takes `subframe` by name only: `subframe=0.5`.",
+    "scene.frame_set(10, 0.5)": "takes `subframe` by name only: write `subframe=`. Write `scene.frame_set(10, sub",
     "scene.frame_set(1, 2, 3)": "takes 1 argument by place: `frame_set(frame, *, subframe=0)`.",
-    "mesh.uv_layers.new('UV')": "`bpy.types.UVLoopLayers.new` takes `name` by name only: `name='UV'`.",
+    "mesh.uv_layers.new('UV')": "`name`, `do_init` by name only: write `name=`. Write `mesh.uv_layers.new(name='UV')`.",
     "bpy.ops.object.mode_set('EDIT')": "takes its arguments by name only: `mode='EDIT'`.",
     "scene.frame_set(10.5)": "`frame` of `bpy.types.Scene.frame_set` is a whole number: `10.5` is refused.",
     "blf.size(0, 20, 72)": "`blf.size` takes 2 arguments by place: `size(fontid, size, /)`.",
-    "bmesh.ops.create_cube(bm, 2)": "`bmesh.ops.create_cube` takes `size` by name only: `size=2`.",
+    "bmesh.ops.create_cube(bm, 2)": "takes `size`, `matrix`, `calc_uvs` by name only: `size=2`.",
 }
 TAKEN = (
     "scene.frame_set(10, subframe=0.5)",
@@ -93,3 +93,14 @@ def test_the_signature_shows_what_is_given_by_name_only(kb: KnowledgeBase) -> No
 def test_a_point_alone_is_no_fraction(kb: KnowledgeBase) -> None:
     assert not any("whole number" in note for note in kb.query("scene.frame_set(.)").notes)
     assert any("whole number: `.5` is refused" in note for note in kb.query("scene.frame_set(.5)").notes)
+
+
+def test_an_argument_is_not_meant_for_what_takes_another_type(kb: KnowledgeBase) -> None:
+    notes = kb.query('layout.template_list("MY_UL", "", scene, "items", scene, "index", 3)').notes
+    assert not [note for note in notes if "item_dyntip_propname=" in note and "Write" in note]
+    assert not [note for note in kb.query("bm = bmesh.new(me)").notes if "use_operators=me" in note]
+
+
+def test_what_takes_names_only_is_said_once(kb: KnowledgeBase) -> None:
+    (note,) = kb.query("layout.split(0.3)").notes
+    assert "Write `layout.split(factor=0.3)`." in note

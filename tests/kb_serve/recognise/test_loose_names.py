@@ -43,7 +43,7 @@ def test_what_an_operator_of_the_script_has_is_its_own(query: str, kb: Knowledge
 
 def test_what_an_operator_of_blenders_lacks_is_told(kb: KnowledgeBase) -> None:
     (note,) = kb.query("layout.operator('mesh.delete').typ = 'VERT'").notes
-    assert note.startswith("`bpy.ops.mesh.delete` has no `typ`")
+    assert note.startswith("`bpy.ops.mesh.delete` takes no `typ`; closest: `type`.")
     answer = kb.query("layout.operator('mesh.delete').type = 'VERT'")
     assert (answer.notes, answer.hits[0].id) == ((), "bpy.ops.mesh.delete")
 

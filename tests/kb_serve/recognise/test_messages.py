@@ -281,7 +281,7 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
         ),
         (
             "AttributeError: 'MyOperator' object has no attribute 'my_prop'",
-            "with a colon (`my_prop: bpy.props.IntProperty()`)",
+            "with a colon (`my_prop: bpy.props.FloatProperty()`, or another of `bpy.props`)",
         ),
         ("ModuleNotFoundError: No module named 'bpy_types'", "`import _bpy_types`"),
         ("NameError: name 'Vector' is not defined", "`from mathutils import Vector`"),

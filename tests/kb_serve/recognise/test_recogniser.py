@@ -664,4 +664,4 @@ def test_a_value_of_what_a_variable_is_always_called_after_is_refused(kb: Knowle
 def test_a_part_of_a_macro_has_the_properties_of_its_operator(kb: KnowledgeBase) -> None:
     layout = "props = layout.operator('mesh.rip_move')\nprops.MESH_OT_rip."
     assert kb.query(f"{layout}use_fill = True").notes == ()
-    assert "has no `use_filly`" in kb.query(f"{layout}use_filly = True").notes[0]
+    assert "takes no `use_filly`; closest: `use_fill`." in kb.query(f"{layout}use_filly = True").notes[0]

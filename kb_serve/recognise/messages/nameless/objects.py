@@ -26,7 +26,8 @@ OBJECTS = (
     NamelessMessage(
         ("Collection '", "already in collection '"),
         (f"{T}CollectionChildren.link",),
-        "Link it only where it is not yet: `if child.name not in collection.children:`.",
+        "Link it only where it is not yet: `if child.name not in collection.children:`. The same is said where it "
+        "would hold itself: the collection is below it already (`child.children_recursive`), or it is the scene's own.",
     ),
     NamelessMessage(
         ("Object '", "not in collection '"),

@@ -1,0 +1,101 @@
+"""Names that a piece of code gives itself: variables that hold Python's own values, modules that it imports from beside
+it, properties and operators that it registers. Blender has nothing to say of these.
+
+Code stands in queries without its ends of lines, so that Python cannot parse it.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kb_build.symbols.api_names import OPERATORS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from kb_serve.recognise.recognition import MissingName
+    from kb_serve.recognise.resolving.chains import Chain
+
+_ASSIGNED = re.compile(r"(?<![\w.])(?P<name>[^\W\d]\w*)\s*=(?!=)\s*(?P<value>\S{0,12})")
+# What begins a value of Python's own; a number or None is often replaced by something of Blender's.
+_OF_PYTHON = re.compile(
+    r"[\[{]|[rbfu]{0,2}[\"']|(?:set|list|dict|tuple|str|frozenset|sorted|range|open|Path|defaultdict|deque|Counter)\("
+)
+_BRACKET = re.compile(r"([()])")
+_FROM_BESIDE = re.compile(
+    r"\bfrom\s+\.[\w.]*\s+import\s+\(?\s*((?:\w+(?:\s+as\s+\w+)?\s*,\s*)*\w+(?:\s+as\s+\w+)?)"
+)
+_REGISTERED = re.compile(
+    r"\bbpy\.types\.\w+\.(?P<name>\w+)\s*(?::[^=\n]{1,60})?=\s*(?:bpy\.)?(?:props\.)?\w+Property\("
+)
+_OF_CLASS = re.compile(r"(?<![\w.])(?P<name>\w+)\s*:\s*(?:bpy\.)?(?:props\.)?\w+Property\(")
+_OPERATOR = re.compile(r"\bbl_idname\s*=\s*[\"'](?P<module>[a-z_]\w*)\.(?P<name>\w+)[\"']")
+
+
+@dataclass(frozen=True, slots=True)
+class OwnNames:
+    """``variables`` and modules of a piece of code that are none of Blender's, the ``properties`` of its classes and
+    those that it adds to Blender's, the paths of its ``operators``.
+    """
+
+    variables: frozenset[str] = frozenset()
+    properties: frozenset[str] = frozenset()
+    operators: frozenset[str] = frozenset()
+
+    def without(self, chains: Sequence[Chain]) -> list[Chain]:
+        """The chains that lead on from none of its variables, nor from a property of its own class."""
+        return [chain for chain in chains if not (chain.steps and self._is_own(chain))]
+
+    def _is_own(self, chain: Chain) -> bool:
+        first = chain.steps[0]
+        is_of_class = chain.root == "self" and first.kind == "attr" and first.text in self.properties
+        return chain.root in self.variables or is_of_class
+
+    def have(self, missing: MissingName) -> bool:
+        """Whether a name that Blender lacks is one of these."""
+        return missing.name in self.properties or f"{missing.owner}.{missing.name}" in self.operators
+
+
+def own_names(text: str) -> OwnNames:
+    """The names that a text gives itself, if it is code."""
+    if "=" not in text and "import" not in text and "Property(" not in text:
+        return _NONE
+    properties = (match["name"] for form in (_REGISTERED, _OF_CLASS) for match in form.finditer(text))
+    return OwnNames(
+        frozenset((*_variables(_outside_brackets(text)), *_from_beside(text))),
+        frozenset(properties),
+        frozenset(f"{OPERATORS}{match['module']}.{match['name']}" for match in _OPERATOR.finditer(text)),
+    )
+
+
+def _variables(text: str) -> Iterator[str]:
+    """The variables that are set to values of Python's own, and to nothing else."""
+    values: dict[str, list[bool]] = {}
+    for match in _ASSIGNED.finditer(text):
+        values.setdefault(match["name"], []).append(_OF_PYTHON.match(match["value"]) is not None)
+    return (name for name, are_own in values.items() if all(are_own))
+
+
+def _outside_brackets(text: str) -> str:
+    """A text without what stands in round brackets, where ``name=value`` is an argument."""
+    kept: list[str] = []
+    depth = 0
+    for part in _BRACKET.split(text):
+        if part == ")":
+            depth = max(0, depth - 1)
+        if depth == 0:
+            kept.append(part)
+        if part == "(":
+            depth += 1
+    return "".join(kept)
+
+
+def _from_beside(text: str) -> Iterator[str]:
+    """The names that are imported from modules beside the code's own."""
+    for match in _FROM_BESIDE.finditer(text):
+        yield from (name.split()[-1] for name in match[1].split(","))
+
+
+_NONE = OwnNames()
