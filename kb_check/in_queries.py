@@ -20,6 +20,7 @@ from kb_serve.reader import UNLIMITED
 from kb_serve.recognise.code.wrong_values import NO_VALUE
 from kb_serve.recognise.names.corrections import is_misspelling
 from kb_serve.recognise.removed.lost_names import is_telling
+from kb_serve.recognise.resolving.chains import MOST_CODE, find_chains
 from kb_serve.recognise.resolving.variables import is_guess, usual_classes
 
 if TYPE_CHECKING:
@@ -55,6 +56,8 @@ _NAMES = (
     _GONE,
     "unknown-operator",
 )  # of which an answer tells but where they are texts: ``layout.prop(ob, "locaton")``
+_KEYWORD = "unknown-keyword"
+_GONE_NAMES = ("unknown-context-member", _KEYWORD, "unknown-name", "unknown-socket")
 _ANIMATED = re.compile(r"\.(?:keyframe|driver)_\w+\(")  # of their paths an answer tells, too
 _OF_CLASS = re.compile(r"\s*bl_\w+\s*=")
 _QUOTES = ("'", '"')
@@ -80,9 +83,11 @@ def notes_on_code(reader: BaseReader, query: str) -> tuple[str, ...]:
     checker = checker_beside(reader)
     code = f"{_bindings(tree, checker)}\n{code}"
     lines = split_lines(code)
+    is_long = sum(chain.is_code for chain in find_chains(query)) >= MOST_CODE
     try:
         with reader.bounded(UNLIMITED):  # each line of the code may take as much as a query
-            findings = [*_news(checker.check(code, rules=(*_RULES, _NEVER_TRUE, *_NAMES)), lines)]
+            rules = (*_RULES, _NEVER_TRUE, *_NAMES, *(_GONE_NAMES if is_long else ()))
+            findings = [*_news(checker.check(code, rules=rules), lines, reader, is_long=is_long)]
     except sqlite3.DatabaseError as error:
         raise checker.names.reader.damaged(error) from error
     except Exception as error:  # what goes wrong with a rule takes no answer with it
@@ -175,10 +180,13 @@ def _having(name: str, attributes: Collection[str], reader: BaseReader) -> list[
     return []
 
 
-def _news(findings: Sequence[Finding], lines: Sequence[str]) -> Iterator[Finding]:
+def _news(
+    findings: Sequence[Finding], lines: Sequence[str], reader: BaseReader, *, is_long: bool
+) -> Iterator[Finding]:
     """Errors in the code itself, but for names that are gone, and what is wrong behind one of those in its line.
 
-    Of names that are texts, and of the values of a class's own attributes, an answer does not tell. A text that is no
+    Of names that are gone an answer tells by itself, unless the code ``is_long``: it reads the first expressions alone.
+    Of names that are texts, and of the values of a class's own attributes, it does not tell. A text that is no
     misspelling may be the name of what an add-on registers.
     """
     gone = {finding.span.line: finding.span.column for finding in findings if finding.absent}
@@ -191,7 +199,8 @@ def _news(findings: Sequence[Finding], lines: Sequence[str]) -> Iterator[Finding
         is_value = finding.rule == _NO_VALUE and (_ARGUMENT in finding.symbol or bool(_OF_CLASS.match(line)))
         is_value = is_value and _IS_NONE.search(finding.message) is not None
         is_name = finding.rule in _NAMES or bool(finding.absent)
-        is_told = (is_name and not (is_value or is_text)) or is_behind
+        is_left = is_long and (finding.rule == _KEYWORD or reader.removed(finding.symbol) is not None)
+        is_told = (is_name and not (is_value or is_text or is_left)) or is_behind
         is_wrong = finding.severity == "error" or is_value or finding.rule == _NEVER_TRUE
         if is_wrong and span.line > 1 and not is_told:
             yield finding

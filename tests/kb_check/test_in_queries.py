@@ -181,3 +181,20 @@ def test_misspelt_texts_and_values_of_class_attributes_are_told(
 )
 def test_what_an_add_on_may_register_is_not_denied(kb: KnowledgeBase, code: str) -> None:
     assert kb.query(code).notes == ()
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("ob.select = True", "`bpy.types.Object.select` does not exist"),
+        ("context.scene.objects.link(ob)", "`bpy.types.SceneObjects.link` does not exist"),
+        ('bpy.ops.object.lamp_add(type="SUN")', "`bpy.ops.object.lamp_add` does not exist"),
+        ("bpy.app.timers.register(f, interval=1)", "takes no `interval`"),
+        ("mesh.calc_normals()", "`bpy.types.Mesh.calc_normals` does not exist"),
+    ],
+)
+@pytest.mark.parametrize("before", [0, 5, 20])
+def test_what_is_gone_is_told_at_any_length(kb: KnowledgeBase, line: str, told: str, before: int) -> None:
+    code = "\n".join([*(f"value_{number} = compute({number})" for number in range(before)), line])
+    notes = [note for note in kb.query(code).notes if told in note]
+    assert len(notes) == 1

@@ -68,9 +68,13 @@ _MADE_BY_CALL = ("mathutils.", "bmesh.types.", TYPES)
 
 # Python's own names, which are not Blender's API.
 _NOT_API = frozenset({*dir(builtins), "NoneType"})
+# Modules and classes that scripts use beside Blender's, and that nothing of Blender's is called by.
 _OTHERS_MODULES = frozenset(
-    {"np", "numpy", "pd", "plt", "torch", "cv2", "Path"}
-)  # that scripts use beside Blender's
+    {
+        "Path", "argparse", "csv", "cv2", "datetime", "functools", "hashlib", "np", "numpy", "pd", "plt", "shutil",
+        "struct", "subprocess", "tempfile", "textwrap", "threading", "torch", "traceback", "urllib", "uuid", "zipfile",
+    }
+)  # fmt: skip
 _PYTHON_MODULES = {
     module.__name__: module for module in (itertools, json, logging, math, os, pathlib, random, re, sys, time)
 }

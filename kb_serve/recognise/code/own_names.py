@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import OPERATORS
+from kb_serve.recognise.resolving.variables import usual_classes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -31,16 +32,20 @@ _REGISTERED = re.compile(
     r"\bbpy\.types\.\w+\.(?P<name>\w+)\s*(?::[^=\n]{1,60})?=\s*(?:bpy\.)?(?:props\.)?\w+Property\("
 )
 _OF_CLASS = re.compile(r"(?<![\w.])(?P<name>\w+)\s*:\s*(?:bpy\.)?(?:props\.)?\w+Property\(")
+_FUNCTION = re.compile(r"\bdef\s+\w+\(([^()]*)")
+_PARAMETER = re.compile(r"(?:^|,)\s*\**(\w+)")
+_SIGNS = ("=", "import", "Property(", "def ")  # one of which code has that gives itself names
 _OPERATOR = re.compile(r"\bbl_idname\s*=\s*[\"'](?P<module>[a-z_]\w*)\.(?P<name>\w+)[\"']")
 
 
 @dataclass(frozen=True, slots=True)
 class OwnNames:
-    """``variables`` and modules of a piece of code that are none of Blender's, the ``properties`` of its classes and
-    those that it adds to Blender's, the paths of its ``operators``.
+    """``variables`` and modules of a piece of code that are none of Blender's, the ``parameters`` of its functions, the
+    ``properties`` of its classes and those that it adds to Blender's, the paths of its ``operators``.
     """
 
     variables: frozenset[str] = frozenset()
+    parameters: frozenset[str] = frozenset()
     properties: frozenset[str] = frozenset()
     operators: frozenset[str] = frozenset()
 
@@ -54,17 +59,21 @@ class OwnNames:
         return chain.root in self.variables or is_of_class
 
     def have(self, missing: MissingName) -> bool:
-        """Whether a name that Blender lacks is one of these."""
-        return missing.name in self.properties or f"{missing.owner}.{missing.name}" in self.operators
+        """Whether a name that Blender lacks is one of these, or of a parameter that no class is usually called by."""
+        name = missing.variable
+        is_of_parameter = name in self.parameters and missing.owner not in usual_classes(name)
+        is_own = missing.name in self.properties or f"{missing.owner}.{missing.name}" in self.operators
+        return is_own or is_of_parameter
 
 
 def own_names(text: str) -> OwnNames:
     """The names that a text gives itself, if it is code."""
-    if "=" not in text and "import" not in text and "Property(" not in text:
+    if not any(sign in text for sign in _SIGNS):
         return _NONE
     properties = (match["name"] for form in (_REGISTERED, _OF_CLASS) for match in form.finditer(text))
     return OwnNames(
         frozenset((*_variables(_outside_brackets(text)), *_from_beside(text))),
+        frozenset(name for match in _FUNCTION.finditer(text) for name in _PARAMETER.findall(match[1])),
         frozenset(properties),
         frozenset(f"{OPERATORS}{match['module']}.{match['name']}" for match in _OPERATOR.finditer(text)),
     )

@@ -74,7 +74,7 @@ def wrong_arguments(
         yield f"{NO_OVERRIDE} Write `{line}`." if line else NO_OVERRIDE
     elif symbol.kind == "operator":
         yield from _by_place_to_operator(symbol, text)
-    else:
+    elif chain.attributes:  # what is called by its name alone may be the script's own
         yield from _by_place(symbol, text)
     if symbol.kind == "operator" or symbol.path.startswith("bmesh.ops.") or places_of(symbol) is not None:
         given = {name: written for name, written in arguments(text) if name}

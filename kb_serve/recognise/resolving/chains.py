@@ -9,7 +9,7 @@ from typing import Literal
 
 _BUILTINS = frozenset(dir(builtins))
 MAX_QUERY = 4_000
-_MAX_CHAINS = 12
+MOST_CODE = 12  # expressions of a text that are read
 MAX_STEPS = 16  # the longest expression of a scene's script has ten
 _MAX_BUILTINS = 12
 _MAX_VALUES = 8
@@ -190,6 +190,6 @@ def find_chains(text: str) -> list[Chain]:
         )
         chains.append(chain)
         code += chain.is_code
-        if code >= _MAX_CHAINS:
+        if code >= MOST_CODE:
             break
     return chains

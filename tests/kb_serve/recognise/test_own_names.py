@@ -31,6 +31,9 @@ DENIED = ("has no", "does not exist", "never had", "is a custom property", "by p
         'class OBJECT_OT_c(bpy.types.Operator):\n    bl_idname = "object.c"\n    bl_label = "C"\n'
         "    def execute(self, context):\n        return {'FINISHED'}\nbpy.utils.register_class(OBJECT_OT_c)\n"
         "bpy.ops.object.c()",
+        "def generate(params):\n    params.tool_mouse = 1",
+        "def f(a):\n    return create_grid(a, 2, 3)",
+        "def f(a):\n    return struct.calcsize(a)",
         "class MY_PT_x(bpy.types.Panel):\n    bl_label = 'x'\n    def draw_header(self, context):\n        pass",
         "class OBJECT_OT_add_object(Operator, AddObjectHelper):\n    bl_idname = 'mesh.add_object'\n"
         "    bl_label = 'x'\n    def execute(self, context):\n        add_object(self, context)\n"
@@ -47,6 +50,7 @@ def test_what_code_gives_itself_is_not_denied(kb: KnowledgeBase, code: str) -> N
         ("nodes = tree.nodes\nnodes.append(n)", "has no `append`"),
         ("nodes = []\nnodes = tree.nodes\nnodes.append(n)", "has no `append`"),
         ("f(a, material=[])\nmaterial.use_shadeless = True", "removed in 2.80"),
+        ("def f(mat):\n    mat.use_shadeless = True", "removed in 2.80"),
         ("bpy.ops.object.select_all(ctx, action='SELECT')", "A context is not an argument"),
     ],
 )
