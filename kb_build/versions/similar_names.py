@@ -129,8 +129,9 @@ def _is_of_module(path: str) -> bool:
 
 
 def _text(symbol: Symbol) -> str:
-    """A symbol's label, description and enum items."""
-    items = (f"{item.identifier} {item.name}" for item in symbol.enum_items)
+    """A symbol's label, description and enum items; not those of the icons, which are called like anything."""
+    listed = symbol.enum_items if len(symbol.enum_items) <= _MOST_ITEMS else ()
+    items = (f"{item.identifier} {item.name}" for item in listed)
     return " ".join((symbol.label, symbol.description, *items))
 
 
