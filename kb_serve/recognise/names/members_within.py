@@ -10,6 +10,7 @@ from kb_build.index.analysis import key
 from kb_build.symbols.api_names import ID, OBJECT, STRUCT, TYPES
 from kb_serve.recognise.names.elements import ADDING, REMOVING
 from kb_serve.recognise.names.held_collections import is_none_when_new, members_of
+from kb_serve.recognise.names.layers import in_layers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -53,7 +54,10 @@ def members_within(owner: str, name: str, reader: BaseReader, *, on_new: bool = 
         if (member := _own_of(f"{TYPES}{one.target}", name, reader))
         and not (member.kind == "function" and reader.descends(f"{TYPES}{one.target}", ID))
     }
-    for member, note in (*_of_data(owner, name, reader), *_of_collections(members, name, reader)):
+    beside = (
+        *_of_data(owner, name, reader), *_of_collections(members, name, reader), *in_layers(owner, name, reader)
+    )  # fmt: skip
+    for member, note in beside:
         found.setdefault(member, note)
     if not found and not on_new:
         for one in pointers:

@@ -133,3 +133,24 @@ def test_an_input_of_a_node_comes_before_what_its_parts_have(
     answer = kb.query(f"AttributeError: '{owner}' object has no attribute '{name}'")
     assert answer.hits[0].id == f"{T}{path}"
     assert "has it" not in "\n".join(answer.notes)
+
+
+@pytest.mark.parametrize(
+    ("query", "first", "how"),
+    [
+        (
+            "AttributeError: 'BMLoop' object has no attribute 'uv'",
+            "bmesh.types.BMLoopUV.uv",
+            "`layer = bm.loops.layers.uv.verify()` before, then `loop[layer].uv`",
+        ),
+        (
+            "bm.verts[0].deform",
+            "bmesh.types.BMLayerAccessVert.deform",
+            "`layer = bm.verts.layers.deform.verify()` before, then `vert[layer]`",
+        ),
+    ],
+)
+def test_what_elements_of_a_bmesh_have_in_layers(kb: KnowledgeBase, query: str, first: str, how: str) -> None:
+    answer = kb.query(query)
+    assert answer.hits[0].id == first
+    assert any(how in note for note in answer.notes)
