@@ -31,6 +31,7 @@ _LITERAL = re.compile(
 _ITEM = re.compile(r"""(["'])(\w[\w. -]{0,60})\1""")
 _SOCKETS = re.compile(r"\.(?:in|out)puts\[['\"]")
 _QUOTES = ("'", '"')
+_BEFORE = 12  # characters that are looked at before a name, for what defines it
 _DEFINED = re.compile(r"\bclass\s+\Z")
 _FUNCTION = re.compile(r"\bdef\s+\Z")
 _CLOSING = {"(": ")", "[": "]"}
@@ -175,7 +176,7 @@ def find_chains(text: str) -> list[Chain]:
             if builtins_called <= _MAX_BUILTINS:
                 position = match.end() + 1  # the arguments of Python's own functions may be Blender's
             continue
-        if steps and steps[0].kind == "call" and _DEFINED.search(text, 0, start):
+        if steps and steps[0].kind == "call" and _DEFINED.search(text, max(0, start - _BEFORE), start):
             position = match.end() + 1  # what a class derives from
             continue
         chain = Chain(
@@ -186,7 +187,7 @@ def find_chains(text: str) -> list[Chain]:
             _values(text, position) if steps else (),
             text[start - 1 : start] in _QUOTES and text[start - 1 : start] == text[position : position + 1],
             literal=_literal(text, position) if steps else "",
-            defined=bool(steps) and _FUNCTION.search(text, 0, start) is not None,
+            defined=bool(steps) and _FUNCTION.search(text, max(0, start - _BEFORE), start) is not None,
         )
         chains.append(chain)
         code += chain.is_code
