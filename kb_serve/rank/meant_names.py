@@ -10,6 +10,7 @@ from kb_serve.rank.meant_members import MeantMembers, meant_members
 from kb_serve.recognise.names.corrections import is_misspelling
 from kb_serve.recognise.names.data_of_others import data_of_others
 from kb_serve.recognise.names.members_within import OF_ELEMENTS
+from kb_serve.recognise.names.own_names import add_registering, is_own_name
 from kb_serve.recognise.notes import SIMILAR
 
 if TYPE_CHECKING:
@@ -42,6 +43,10 @@ class MeantNames:
             return
         if within and not of_elements:
             return
+        if is_own_name(missing.owner, missing.name, self._reader):
+            add_registering(missing.owner, missing.name, recognition)
+            recognition.matches.sort(key=lambda match: -match.sure)
+            return  # its words say nothing of Blender's
         meant = self._meant(missing, recognition)
         if within and not self._is_rather_own(missing.name, meant):
             return

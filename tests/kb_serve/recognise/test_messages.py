@@ -60,6 +60,18 @@ FIRST = {
     "ValueError: 1-2 args execution context is supported": "bpy.types.Context.temp_override",
     "ReferenceError: BMesh data of type BMesh has been removed": "bmesh.types.BMesh.free",
     "ReferenceError: StructRNA of type Object has been removed": "bpy.types.BlendDataObjects.remove",
+    'AttributeError: bpy_prop_collection: attribute "extend" not found': "bpy.types.bpy_prop_collection_idprop.add",
+    'AttributeError: bpy_prop_collection: attribute "index" not found': "bpy.types.bpy_prop_collection.find",
+    'AttributeError: Calling operator "bpy.ops.foo.nine" error, could not be found': "bpy.utils.register_class",
+    "rna_uiItemO: unknown operator 'foo.bar'": "bpy.utils.register_class",
+    "rna_uiItemO: unknown operator 'object.delet'": "bpy.ops.object.delete",
+    'AttributeError: Calling operator "bpy.ops.import_scene.obj" error, could not be found': "bpy.ops.wm.obj_import",
+    "AttributeError: 'Scene' object has no attribute 'my_props'": "bpy.props.PointerProperty",
+    "rna_uiItemR: property not found: Scene.my_prop": "bpy.props.PointerProperty",
+    "TypeError: GPUOffScreen.__new__() got an unexpected keyword argument 'samples'": "gpu.types.GPUOffScreen",
+    "TypeError: GPUTexture.__new__() takes exactly 1 positional argument (2 given)": "gpu.types.GPUTexture",
+    "TypeError: IndexBuf.__new__: expected a sequence, got int": "gpu.types.GPUIndexBuf",
+    'TypeError: delete: keyword "context" expected a string, not int': "bmesh.ops.delete",
     # Classes that are spelled like a module, or like a value.
     "'BMesh' object has no attribute 'calc_tessface'": "bmesh.types.BMesh.calc_loop_triangles",
     "'BMesh' object has no attribute 'select_flush_mode'": "bmesh.types.BMesh.select_flush_mode",
@@ -292,6 +304,30 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
         ("AttributeError: 'str' object has no attribute 'location'", '`bpy.data.objects["…"]`'),
         ("AttributeError: type object 'Object' has no attribute 'mine'", "`bpy.types.Object` has no `mine`"),
         (
+            'AttributeError: bpy_prop_collection: attribute "insert" not found',
+            "If it is a `CollectionProperty` of your own: `items.add()`, then `items.move(len(items) - 1, index)`.",
+        ),
+        (
+            'AttributeError: Calling operator "bpy.ops.foo.nine" error, could not be found',
+            'of the class with `bl_idname = "foo.nine"` did not run here.',
+        ),
+        (
+            "AttributeError: type object 'Scene' has no attribute 'my_prop'",
+            "`bpy.types.Scene.my_prop = bpy.props.PointerProperty(type=…)`",
+        ),
+        (
+            "TypeError: GPUFrameBuffer.__new__() got an unexpected keyword argument 'color'",
+            "`gpu.types.GPUFrameBuffer` takes no `color`; closest: `color_slots`.",
+        ),
+        (
+            'TypeError: triangulate: keyword "quad_method" expected a string, not int',
+            "`bmesh.ops.triangulate(quad_method=…)` takes one of `'BEAUTY'`, `'FIXED'`",
+        ),
+        (
+            'TypeError: bevel: keyword "geom" expected a bmesh sequence, list, (htype, flag) pair, not int',
+            "takes a list of the bmesh's own elements, as `bm.faces[:]`.",
+        ),
+        (
             'TypeError: ObjectModifiers.new(): error with argument 2, "type" -  enum "SUBDIVISION" not found in '
             "('BEVEL', 'BOOLEAN', 'MULTIRES', 'SUBSURF')",
             "`SUBDIVISION` is not an item of this enum; of that label: `SUBSURF`.",
@@ -300,6 +336,31 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
 )
 def test_notes_explain_error_messages(kb: KnowledgeBase, message: str, said: str) -> None:
     assert said in "\n".join(kb.query(message).notes)
+
+
+@pytest.mark.parametrize(
+    ("message", "denied"),
+    [
+        ("AttributeError: 'Scene' object has no attribute 'my_props'", "Closest"),
+        (
+            "bpy.rna          | WARNING current value '5' matches no enum in 'Scene', 'Scene', 'e'",
+            "has no `rna`",
+        ),
+        ("WARN (bpy.rna): current value '0' matches no enum in 'Scene', '', 'my_enum'", "has no `rna`"),
+        (
+            'AttributeError: Calling operator "bpy.ops.import_scene.obj" error, could not be found',
+            "is registered",
+        ),
+    ],
+)
+def test_what_messages_do_not_say_is_not_told(kb: KnowledgeBase, message: str, denied: str) -> None:
+    assert denied not in "\n".join(kb.query(message).notes)
+
+
+def test_the_place_of_a_call_in_a_message_is_none_of_its_words(kb: KnowledgeBase) -> None:
+    message = "RuntimeError: Error: Python: TypeError: 'NoneType' object is not iterable\n"
+    located = kb.query(f"{message}Location: /opt/blender/5.0/scripts/modules/bpy/ops.py:109")
+    assert [hit.id for hit in located.hits] == [hit.id for hit in kb.query(message).hits]
 
 
 @pytest.mark.parametrize(

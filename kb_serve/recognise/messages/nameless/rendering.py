@@ -8,6 +8,43 @@ from kb_serve.recognise.messages.nameless.message import NamelessMessage
 _O = "bpy.ops.object."
 RENDERING = (
     NamelessMessage(
+        ("enum identifier: '", "'POST_PIXEL'"),
+        (f"{T}Space.draw_handler_add",),
+        "The last argument says when to draw: 'POST_PIXEL' over the editor, in pixels of the region; 'POST_VIEW' with "
+        "the scene, in its coordinates; 'PRE_VIEW' before it; 'BACKDROP' in the node editor.",
+    ),
+    NamelessMessage(
+        ("enum identifier: '", "'WINDOW', 'HEADER'"),
+        (f"{T}Space.draw_handler_add", f"{T}Region.type"),
+        "The third argument is the type of the region that is drawn in, mostly 'WINDOW': "
+        "`draw_handler_add(function, (), 'WINDOW', 'POST_PIXEL')`.",
+    ),
+    NamelessMessage(
+        ("draw_handler_add() argument 3 must be tuple",),
+        (f"{T}Space.draw_handler_add",),
+        "What the function is to be given is a tuple, empty for nothing: "
+        "`draw_handler_add(function, (), 'WINDOW', 'POST_PIXEL')`.",
+    ),
+    NamelessMessage(
+        ("callback_remove(handler): ", "invalid or already removed"),
+        (f"{T}Space.draw_handler_remove", f"{T}Space.draw_handler_add"),
+        "Keep what `draw_handler_add()` returns, remove it once, with the same region type, and forget it: "
+        "`draw_handler_remove(handle, 'WINDOW')`, `handle = None`.",
+    ),
+    NamelessMessage(
+        ("incorrect sequence item type: ",),
+        (f"{T}bpy_prop_array.foreach_get", f"{T}bpy_prop_array.foreach_set", f"{T}Image.pixels"),
+        "`foreach_get()` and `foreach_set()` of a property take arrays of 32-bit floats alone, of one with whole "
+        "numbers 32-bit integers: `numpy.empty(len(image.pixels), dtype=numpy.float32)`, "
+        "`array.astype(numpy.float32)`.",
+    ),
+    NamelessMessage(
+        ("expected sequence size ", ", got "),
+        (f"{T}bpy_prop_array.foreach_set", f"{T}bpy_prop_array.foreach_get", f"{T}Image.pixels"),
+        "It wants one flat row of as many numbers as `len(image.pixels)`, which is width × height × channels: "
+        "`array.ravel()`.",
+    ),
+    NamelessMessage(
         ("Cannot render, no camera",),
         (f"{T}Scene.camera", f"{T}BlendDataCameras.new"),
         "`scene.camera = obj`, an object with a camera as data.",
