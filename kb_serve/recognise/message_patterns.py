@@ -62,7 +62,8 @@ NO_IMPORT = re.compile(r"cannot import name ['\"](?P<name>\w+)['\"] from ['\"](?
 POLL = re.compile(r"Operator (?P<path>bpy\.ops\.\w+\.\w+)\.poll\(\)")
 WRONG_TYPE = re.compile(
     # Only from the start of a dotted name, and the whole of it: trying each part of a long one takes seconds.
-    r"(?<![\w.])(?:(?P<operator>[A-Z][A-Z_0-9]*_OT_\w+)\.\w+|(?P<path>\w++(?:\.\w++)++)) expected [^,]{1,80}, not \w+"
+    r"(?<![\w.])(?:(?P<operator>[A-Z][A-Z_0-9]*_OT_\w+)\.\w+|(?P<path>\w++(?:\.\w++)++)) expected "
+    r"(?P<wanted>an? \w+|[^,]{1,80})(?: type)?, not \w+"
 )
 GIVEN = re.compile(
     r"expected an? (?P<wanted>\w+) type, not (?P<given>\w+)"

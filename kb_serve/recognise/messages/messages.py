@@ -20,6 +20,7 @@ from kb_serve.recognise.messages.keys import Keys
 from kb_serve.recognise.messages.keywords import Keywords
 from kb_serve.recognise.messages.lacking_owners import LackingOwners
 from kb_serve.recognise.messages.made_otherwise import MadeOtherwise
+from kb_serve.recognise.messages.manifests import Manifests
 from kb_serve.recognise.messages.multiplications import recognise_multiplications
 from kb_serve.recognise.messages.named_symbols import NamedSymbols
 from kb_serve.recognise.messages.nameless_messages import NamelessMessages
@@ -78,6 +79,7 @@ class Messages:
             Registration(reader).recognise,
             GivenValues(reader, absent).recognise,
             RefusedCalls(reader).recognise,
+            Manifests(reader).recognise,
             NamelessMessages(reader).recognise,
         )
         self._explainers: tuple[Callable[[str, Recognition], None], ...] = (

@@ -246,6 +246,15 @@ def test_a_new_actions_slot_is_made_by_keys_or_by_hand(reader: BaseReader) -> No
     assert data.action_slot is not None
 
 
+def test_a_slot_is_found_by_its_identifier(reader: BaseReader) -> None:
+    assert 'slots["OBCube"]' in said(reader, "bpy.types.Action.slots")
+    action = bpy.data.actions.new("a")
+    slot = action.slots.new("OBJECT", "Cube")
+    assert (slot.identifier, slot.name_display) == ("OBCube", "Cube")
+    assert action.slots["OBCube"] == slot
+    assert action.slots.get("Cube") is None
+
+
 # What docstrings have otherwise
 
 

@@ -10,9 +10,11 @@ import pytest
 from told_by_blender import told_by_blender
 
 from kb_serve.recognise.message_patterns import prose_of
+from kb_serve.recognise.messages.element_layers import layer_of
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
+    from kb_serve.reader import BaseReader
 
 SPHERE = "bpy.ops.mesh.primitive_uv_sphere_add"
 FIRST = {
@@ -72,6 +74,19 @@ FIRST = {
     "TypeError: GPUTexture.__new__() takes exactly 1 positional argument (2 given)": "gpu.types.GPUTexture",
     "TypeError: IndexBuf.__new__: expected a sequence, got int": "gpu.types.GPUIndexBuf",
     'TypeError: delete: keyword "context" expected a string, not int': "bmesh.ops.delete",
+    "TypeError: load() got an unexpected keyword argument 'overrides'": "bpy.types.BlendDataLibraries.load",
+    "TypeError: 'relative_remap' is an invalid keyword argument for write()": "bpy.types.BlendDataLibraries.write",
+    "AttributeError: 'BMLoop' object has no attribute 'uv'": "bmesh.types.BMLayerAccessLoop.uv",
+    "AttributeError: module 'msgbus' has no attribute 'unsubscribe_rna'": "bpy.msgbus.publish_rna",
+    "TypeError: bpy_struct: item.attr = val: enum \"STR\" not found in ('FLOAT', 'INT', 'VECTOR', 'RGBA', 'STRING')": (
+        "bpy.types.NodeClosureOutputItem.socket_type"
+    ),
+    "TypeError: Converting py args to operator properties: FOO_OT_one.filepath expected a string type, not PosixPath": (
+        "bpy.props.StringProperty"
+    ),
+    'TypeError: Converting py args to operator properties:: keyword "toggle_mode" unrecognized': (
+        "bpy.ops.object.mode_set"
+    ),
     # Classes that are spelled like a module, or like a value.
     "'BMesh' object has no attribute 'calc_tessface'": "bmesh.types.BMesh.calc_loop_triangles",
     "'BMesh' object has no attribute 'select_flush_mode'": "bmesh.types.BMesh.select_flush_mode",
@@ -316,6 +331,34 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
             "`bpy.types.Scene.my_prop = bpy.props.PointerProperty(type=…)`",
         ),
         (
+            "TypeError: bpy_struct: item.attr = val: Image.filepath expected a string type, not PosixPath",
+            "Give a text: `str(path)`.",
+        ),
+        (
+            "TypeError: bpy_struct: item.attr = val: Object.name expected a string type, not int",
+            "Give a text: `str(value)`.",
+        ),
+        (
+            "TypeError: write() got an unexpected keyword argument 'relative_remap'",
+            "`bpy.types.BlendDataLibraries.write` takes no `relative_remap`; closest: `path_remap`.",
+        ),
+        (
+            "KeyError: 'bpy_prop_collection[key]: key \"my_addon\" not found', "
+            "context.preferences.addons[__name__].preferences",
+            "that of an extension is `bl_ext.repository.name`.",
+        ),
+        (
+            'KeyError: \'bpy_prop_collection[key]: key "Cube" not found\', action.slots["Cube"]',
+            '`action.slots["OBCube"]`',
+        ),
+        (
+            "key \"permissions\" invalid: permissions must be a table of strings, not a <class 'list'>",
+            '`[permissions]`, below it `network = "Loads maps from the net"`.',
+        ),
+        ('permissions = ["network"]', "`permissions` is a table"),
+        ('missing "maintainer"', "`blender --command extension validate`"),
+        ("ModuleNotFoundError: No module named 'requests'", "an extension brings a package as a wheel"),
+        (
             "TypeError: GPUFrameBuffer.__new__() got an unexpected keyword argument 'color'",
             "`gpu.types.GPUFrameBuffer` takes no `color`; closest: `color_slots`.",
         ),
@@ -346,6 +389,8 @@ def test_notes_explain_error_messages(kb: KnowledgeBase, message: str, said: str
             "bpy.rna          | WARNING current value '5' matches no enum in 'Scene', 'Scene', 'e'",
             "has no `rna`",
         ),
+        ("bpy.msgbus.unsubscribe_rna(owner=f)", "read as"),
+        ("ModuleNotFoundError: No module named 'bgl'", "as a wheel"),
         ("WARN (bpy.rna): current value '0' matches no enum in 'Scene', '', 'my_enum'", "has no `rna`"),
         (
             'AttributeError: Calling operator "bpy.ops.import_scene.obj" error, could not be found',
@@ -355,6 +400,28 @@ def test_notes_explain_error_messages(kb: KnowledgeBase, message: str, said: str
 )
 def test_what_messages_do_not_say_is_not_told(kb: KnowledgeBase, message: str, denied: str) -> None:
     assert denied not in "\n".join(kb.query(message).notes)
+
+
+@pytest.mark.blender
+def test_what_elements_of_a_bmesh_lack_lies_in_a_layer(reader: BaseReader) -> None:
+    bmesh = pytest.importorskip("bmesh")
+    bm = bmesh.new()
+    bm.faces.new([bm.verts.new(co) for co in ((0, 0, 0), (1, 0, 0), (0, 1, 0))])
+    found = 0
+    for owner in ("BMVert", "BMEdge", "BMFace", "BMLoop"):
+        for name in reader.members(owner.replace("BM", "bmesh.types.BMLayerAccess")):
+            layer = layer_of(f"bmesh.types.{owner}", name, reader)
+            assert layer is not None
+            _, setting, _, reading, _ = layer.how.split("`")
+            names = {"bm": bm}
+            exec(setting, names)
+            for sequence in (bm.verts, bm.edges, bm.faces):
+                sequence.ensure_lookup_table()
+            element = {"BMVert": bm.verts[0], "BMEdge": bm.edges[0], "BMFace": bm.faces[0]}.get(owner)
+            names[owner[2:].lower()] = element or bm.faces[0].loops[0]
+            assert eval(reading, names) is not None
+            found += 1
+    assert found
 
 
 def test_the_place_of_a_call_in_a_message_is_none_of_its_words(kb: KnowledgeBase) -> None:

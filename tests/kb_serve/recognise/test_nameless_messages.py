@@ -141,6 +141,7 @@ bpy.types.SpaceView3D.draw_handler_remove(None, "WINDOW")
 bpy.data.images.new("i", 8, 8).pixels.foreach_get(numpy.empty(256))
 bpy.data.images.new("i", 8, 8).pixels.foreach_set([0.0] * 3)
 stored()
+bpy.context.preferences.addons["cycles"].preferences.compute_device_type = "GPU"
 """.splitlines()
 _RUN = """
 import json, os, sys, tempfile

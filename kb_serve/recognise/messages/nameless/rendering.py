@@ -32,6 +32,12 @@ RENDERING = (
         "`draw_handler_remove(handle, 'WINDOW')`, `handle = None`.",
     ),
     NamelessMessage(
+        ('enum "', "\" not found in ('NONE', 'CUDA'"),
+        (f"{T}CyclesPreferences.compute_device_type", f"{T}CyclesRenderSettings.device"),
+        "`compute_device_type` of the add-on's preferences takes the kind of device that the message lists; 'NONE' is "
+        "the CPU alone. 'GPU' and 'CPU' are values of `scene.cycles.device`.",
+    ),
+    NamelessMessage(
         ("incorrect sequence item type: ",),
         (f"{T}bpy_prop_array.foreach_get", f"{T}bpy_prop_array.foreach_set", f"{T}Image.pixels"),
         "`foreach_get()` and `foreach_set()` of a property take arrays of 32-bit floats alone, of one with whole "
