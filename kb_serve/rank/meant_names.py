@@ -10,7 +10,7 @@ from kb_serve.rank.meant_members import MeantMembers, meant_members
 from kb_serve.recognise.names.corrections import is_misspelling
 from kb_serve.recognise.names.data_of_others import data_of_others
 from kb_serve.recognise.names.members_within import OF_ELEMENTS
-from kb_serve.recognise.names.own_names import add_registering, is_own_name
+from kb_serve.recognise.names.registered_names import add_registering, is_own_name
 from kb_serve.recognise.notes import SIMILAR
 
 if TYPE_CHECKING:
@@ -39,9 +39,8 @@ class MeantNames:
         missing = next((one for one in recognition.missing if one.owner), recognition.doubted)
         within = [match for match in recognition.matches if match.why == "within"]
         of_elements = any(note.startswith(OF_ELEMENTS) for note in recognition.notes)
-        if missing is None or recognition.removed or not missing.name.isidentifier():
-            return
-        if within and not of_elements:
+        is_found = recognition.removed or (within and not of_elements)
+        if missing is None or is_found or not missing.name.isidentifier():
             return
         if is_own_name(missing.owner, missing.name, self._reader):
             add_registering(missing.owner, missing.name, recognition)

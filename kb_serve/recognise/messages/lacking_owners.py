@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import words
 from kb_build.symbols.api_names import ID, TYPES
 from kb_serve.recognise.messages.context_members import note_on_absent
-from kb_serve.recognise.names.corrections import is_misspelling
 from kb_serve.recognise.messages.element_layers import layer_of
+from kb_serve.recognise.names.corrections import is_misspelling
 from kb_serve.recognise.names.elements import elsewhere
 from kb_serve.recognise.names.members_within import members_within
 from kb_serve.recognise.names.operator_words import operator_of_class

@@ -821,6 +821,12 @@ def test_removed_enum_values_are_noted(kb: KnowledgeBase) -> None:
     assert any("NISHITA" in note and "SINGLE_SCATTERING" in note for note in answer.notes)
 
 
+def test_the_engines_that_a_panel_is_for_are_none_that_is_set(kb: KnowledgeBase) -> None:
+    panel = "COMPAT_ENGINES = {'BLENDER_RENDER', 'BLENDER_EEVEE'}"
+    assert not any("BLENDER_RENDER" in note for note in kb.query(panel).notes)
+    assert any("BLENDER_RENDER" in note for note in kb.query(f"{panel}\nx.engine = 'BLENDER_RENDER'").notes)
+
+
 def test_preferences_of_an_add_on_are_reached_through_it(kb: KnowledgeBase) -> None:
     reached = 'bpy.context.preferences.addons["cycles"].preferences'
     answer = kb.query(f"{reached}.compute_device_type = 'CUDA'")
