@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import words
 from kb_build.symbols.api_names import ID, TYPES
 from kb_serve.recognise.messages.context_members import note_on_absent
-from kb_serve.recognise.messages.element_layers import layer_of
 from kb_serve.recognise.names.corrections import is_misspelling
 from kb_serve.recognise.names.elements import elsewhere
 from kb_serve.recognise.names.members_within import members_within
@@ -90,7 +89,7 @@ class LackingOwners:
             own = self._reader.member_of(owner, meant) if _says_the_same(name, meant) else None
             if own:
                 recognition.add(own.path, 0.97, SIMILAR)
-            if other := elsewhere(owner, name, self._reader) or layer_of(owner, name, self._reader):
+            if other := elsewhere(owner, name, self._reader):
                 recognition.notes.append(other.how)
                 recognition.add(other.path, 0.98, "error message")
             self._of_its_block(owner, name, recognition)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import Recognition
 
 _MINE = "my"  # no name of Blender's begins so
-_OWN_WORDS = frozenset({"addon", "plugin", "prop", "properties", "props"})
+_OWN_WORDS = frozenset({"addon", "plugin", "prop", "props"})  # beside another one
 _REGISTERING = ("bpy.props.PointerProperty", "bpy.props")
 _SURE = 0.97
 _REGISTERED = (
@@ -30,7 +30,8 @@ def is_own_name(owner: str, name: str, reader: BaseReader) -> bool:
         return False
     if owner not in CustomProperties(reader).taken_by(owner):
         return False
-    return name.startswith(_MINE) or not _OWN_WORDS.isdisjoint(words(name))
+    said = words(name)
+    return name.startswith(_MINE) or (len(said) > 1 and not _OWN_WORDS.isdisjoint(said))
 
 
 def add_registering(cls: str, name: str, recognition: Recognition) -> None:

@@ -10,7 +10,7 @@ import pytest
 from told_by_blender import told_by_blender
 
 from kb_serve.recognise.message_patterns import prose_of
-from kb_serve.recognise.messages.element_layers import layer_of
+from kb_serve.recognise.names.element_layers import layer_of
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
@@ -408,6 +408,7 @@ def test_what_elements_of_a_bmesh_lack_lies_in_a_layer(reader: BaseReader) -> No
     bm = bmesh.new()
     bm.faces.new([bm.verts.new(co) for co in ((0, 0, 0), (1, 0, 0), (0, 1, 0))])
     found = 0
+    assert layer_of("bmesh.types.BMVert", "co", reader) is None
     for owner in ("BMVert", "BMEdge", "BMFace", "BMLoop"):
         for name in reader.members(owner.replace("BM", "bmesh.types.BMLayerAccess")):
             layer = layer_of(f"bmesh.types.{owner}", name, reader)
@@ -819,6 +820,12 @@ def test_removed_enum_values_are_noted(kb: KnowledgeBase) -> None:
     answer = kb.query("sky.sky_type = 'NISHITA'")
     assert answer.hits[0].id == "bpy.types.ShaderNodeTexSky.sky_type"
     assert any("NISHITA" in note and "SINGLE_SCATTERING" in note for note in answer.notes)
+
+
+def test_code_that_asks_an_element_for_a_layer_is_told_so(kb: KnowledgeBase) -> None:
+    answer = kb.query("bm.faces[0].loops[0].uv")
+    assert answer.hits[0].id == "bmesh.types.BMLayerAccessLoop.uv"
+    assert not any("Closest" in note for note in answer.notes)
 
 
 def test_the_engines_that_a_panel_is_for_are_none_that_is_set(kb: KnowledgeBase) -> None:

@@ -6,6 +6,10 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
 _O = "bpy.ops.object."
+OF_32_BITS = (
+    "`foreach_get()` and `foreach_set()` of a property take arrays of 32-bit floats alone, of one with whole numbers "
+    "32-bit integers: `numpy.empty(len(image.pixels), dtype=numpy.float32)`, `array.astype(numpy.float32)`."
+)
 RENDERING = (
     NamelessMessage(
         ("enum identifier: '", "'POST_PIXEL'"),
@@ -40,9 +44,7 @@ RENDERING = (
     NamelessMessage(
         ("incorrect sequence item type: ",),
         (f"{T}bpy_prop_array.foreach_get", f"{T}bpy_prop_array.foreach_set", f"{T}Image.pixels"),
-        "`foreach_get()` and `foreach_set()` of a property take arrays of 32-bit floats alone, of one with whole "
-        "numbers 32-bit integers: `numpy.empty(len(image.pixels), dtype=numpy.float32)`, "
-        "`array.astype(numpy.float32)`.",
+        OF_32_BITS,
     ),
     NamelessMessage(
         ("expected sequence size ", ", got "),
