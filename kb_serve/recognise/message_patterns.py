@@ -88,7 +88,8 @@ NO_OPERATOR = re.compile(
     r"Calling operator \"bpy\.ops\.(?P<called>\w+\.\w+)\" error, could not be found"
     r"|\bunknown operator '(?P<drawn>\w+\.\w+)'"
 )
-OF_MAKING = re.compile(r"(?<![\w.])(?P<class>[A-Z]\w++)\.__(?:new|init)__\b")
+# Not of code, which may call its base's own: ``StrokeShader.__init__(self)``.
+OF_MAKING = re.compile(r"(?<![\w.])(?P<class>[A-Z]\w++)\.__(?:new|init)__(?:\((?:\.\.\.)?\)|:)")
 OF_BMESH = re.compile(
     r"(?<![\w.])(?P<function>\w++): keyword \"(?P<name>\w+)\" expected (?P<wanted>[^\n]{1,80}?), not (?P<given>\w+)"
 )

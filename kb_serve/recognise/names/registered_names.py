@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import Recognition
 
 _MINE = "my"  # no name of Blender's begins so
-_OWN_WORDS = frozenset({"addon", "plugin", "prop", "props"})  # beside another one
+_OWN_WORDS = frozenset({"addon", "prop", "props"})  # beside another one
 _REGISTERING = ("bpy.props.PointerProperty", "bpy.props")
 _SURE = 0.97
 _REGISTERED = (

@@ -390,6 +390,7 @@ def test_notes_explain_error_messages(kb: KnowledgeBase, message: str, said: str
             "has no `rna`",
         ),
         ("bpy.msgbus.unsubscribe_rna(owner=f)", "read as"),
+        ("def __init__(self):\n    StrokeShader.__init__(self)\n    raise TypeError('x')", "is called as"),
         ("ModuleNotFoundError: No module named 'bgl'", "as a wheel"),
         ("WARN (bpy.rna): current value '0' matches no enum in 'Scene', '', 'my_enum'", "has no `rna`"),
         (
@@ -404,7 +405,8 @@ def test_what_messages_do_not_say_is_not_told(kb: KnowledgeBase, message: str, d
 
 @pytest.mark.blender
 def test_what_elements_of_a_bmesh_lack_lies_in_a_layer(reader: BaseReader) -> None:
-    bmesh = pytest.importorskip("bmesh")
+    pytest.importorskip("bpy")
+    bmesh = importlib.import_module("bmesh")
     bm = bmesh.new()
     bm.faces.new([bm.verts.new(co) for co in ((0, 0, 0), (1, 0, 0), (0, 1, 0))])
     found = 0
