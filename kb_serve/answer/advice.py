@@ -8,7 +8,9 @@ from kb_build.index.analysis import stem, words
 from kb_build.symbols.api_names import HANDLERS, TYPES
 from kb_build.symbols.lines import GET_EVALUATED
 from kb_serve.recognise.code.products import CLASSES, WITH_AT
+from kb_serve.recognise.messages.keys import KEY_OF_SLOTS, SLOTTED
 from kb_serve.recognise.messages.nameless.python import PLAIN_FUNCTION
+from kb_serve.recognise.messages.nameless.rendering import OF_32_BITS
 from kb_serve.recognise.messages.none_before import TAKES_NO_MODIFIER
 from kb_serve.recognise.messages.ways_to_run import NO_FLUIDS
 from kb_serve.recognise.names.elements import ADDS_BOID_RULE
@@ -420,6 +422,8 @@ ADVICE: tuple[Advice, ...] = (
         about=_stems("action"),
         needs=f"{TYPES}AnimData.action_slot",
     ),
+    Advice(OF_32_BITS, _of("bpy_prop_array.foreach_get", "bpy_prop_array.foreach_set")),
+    Advice(KEY_OF_SLOTS, _of("Action.slots", "ActionSlots"), needs=SLOTTED),
     Advice(WITH_AT, frozenset(CLASSES)),
     Advice(
         _TAGGED,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.index.analysis import stem, stems_of, words
 from kb_build.symbols.api_names import ID, STRUCT
 from kb_build.symbols.paths import last_name, split_path
-from kb_serve.recognise.names.corrections import is_misspelling
+from kb_serve.recognise.names.corrections import are_opposite, is_misspelling
 from kb_serve.recognise.names.likely_keywords import EMPTY_WORDS
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def meant_members(missing: MissingName, searcher: Searcher, reader: BaseReader) 
     for ref, score in searcher.found(f"{cls} {name}"):
         found.setdefault(ref, score)
         entry = reader.entry(ref) if split_path(ref)[0] in owners else None
-        if entry is not None:
+        if entry is not None and not are_opposite(name, entry.name):
             fit = _fit_of_kind(entry, missing)
             shared = _shared(said, entry)
             if entry.owner != STRUCT or shared >= _OF_ALL:

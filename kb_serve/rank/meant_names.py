@@ -10,10 +10,11 @@ from kb_serve.rank.meant_members import MeantMembers, meant_members
 from kb_serve.recognise.names.corrections import is_misspelling
 from kb_serve.recognise.names.data_of_others import data_of_others
 from kb_serve.recognise.names.members_within import OF_ELEMENTS
+from kb_serve.recognise.names.registered_names import add_registering, is_own_name
 from kb_serve.recognise.notes import SIMILAR
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from kb_serve.rank.search import Searcher
     from kb_serve.reader import BaseReader
@@ -38,19 +39,25 @@ class MeantNames:
         missing = next((one for one in recognition.missing if one.owner), recognition.doubted)
         within = [match for match in recognition.matches if match.why == "within"]
         of_elements = any(note.startswith(OF_ELEMENTS) for note in recognition.notes)
-        if missing is None or recognition.removed or not missing.name.isidentifier():
+        is_found = recognition.removed or (within and not of_elements)
+        if missing is None or is_found or not missing.name.isidentifier():
             return
-        if within and not of_elements:
-            return
+        if is_own_name(missing.owner, missing.name, self._reader):  # whose words say nothing of Blender's
+            add_registering(missing.owner, missing.name, recognition)
+        else:
+            self._add_meant(missing, recognition, is_of_elements=bool(within))
+        recognition.matches.sort(key=lambda match: (-match.sure, match.why != "successor"))
+
+    def _add_meant(self, missing: MissingName, recognition: Recognition, *, is_of_elements: bool) -> None:
+        """Adds what Blender has that may be meant."""
         meant = self._meant(missing, recognition)
-        if within and not self._is_rather_own(missing.name, meant):
+        if is_of_elements and not self._is_rather_own(missing.name, meant):
             return
         others = data_of_others(missing, self._reader)
         if others and self._is_of_others(others, meant, missing.name):
-            _add_of_others(others, recognition)
+            _add_instead(others.paths, others.note, recognition)
         else:
             _add_meant(meant, missing, recognition)
-        recognition.matches.sort(key=lambda match: (-match.sure, match.why != "successor"))
 
     def _meant(self, missing: MissingName, recognition: Recognition) -> MeantMembers:
         """What may be meant by a name: what was recognised with certainty, else what the search finds of its class."""
@@ -81,11 +88,11 @@ class MeantNames:
         return not meant.clear or (entry is not None and entry.type == "collection")
 
 
-def _add_of_others(others: DataOfOthers, recognition: Recognition) -> None:
-    """Adds what other data has, in place of what is spelled a little like the name."""
-    recognition.notes.append(others.note)
+def _add_instead(paths: Sequence[str], note: str, recognition: Recognition) -> None:
+    """Adds what something else has, in place of what is spelled a little like the name."""
+    recognition.notes.append(note)
     recognition.matches = [match for match in recognition.matches if match.why != SIMILAR]
-    for place, path in enumerate(others.paths):
+    for place, path in enumerate(paths):
         recognition.add(path, _MOST_MEANT - _BEFORE * place, "within")
 
 

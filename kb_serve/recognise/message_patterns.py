@@ -13,7 +13,12 @@ if TYPE_CHECKING:
 _MOST_MATCHES = 8
 _EXCEPTION = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?|\b(?:Error|Warning):")
 _REPORT = re.compile(r"Error:\s*Error:|^\s*(?:Error|Warning):\s")  # reported by an operator or C code
-_TRACEBACK = re.compile(r"Traceback \(most recent call last\):|File \"[^\"]*\", line \d+(?:, in \S+)?|\^{2,}")
+_TRACEBACK = re.compile(
+    r"Traceback \(most recent call last\):|File \"[^\"]*\", line \d+(?:, in \S+)?|\^{2,}"
+    r"|\bLocation: (?=[/<]|\w:)[^\n]{1,300}?:\d+(?!\S)"  # of the operator's call, mostly in Blender's own ``ops.py``
+)
+# What Blender's log puts before a line: the time, and which part of Blender writes it.
+_OF_LOG = r"\b\w+(?:\.\w+)*\s+\|\s+(?:DEBUG|INFO|WARNING|ERROR)\b|\bWARN\ \(\w+(?:\.\w+)*\):"
 _QUOTED = re.compile(r"(?<!\w)(['\"])[^'\"\n]{0,60}\1")
 
 # Who types a message from memory leaves its quotes out.
@@ -57,7 +62,8 @@ NO_IMPORT = re.compile(r"cannot import name ['\"](?P<name>\w+)['\"] from ['\"](?
 POLL = re.compile(r"Operator (?P<path>bpy\.ops\.\w+\.\w+)\.poll\(\)")
 WRONG_TYPE = re.compile(
     # Only from the start of a dotted name, and the whole of it: trying each part of a long one takes seconds.
-    r"(?<![\w.])(?:(?P<operator>[A-Z][A-Z_0-9]*_OT_\w+)\.\w+|(?P<path>\w++(?:\.\w++)++)) expected [^,]{1,80}, not \w+"
+    r"(?<![\w.])(?:(?P<operator>[A-Z][A-Z_0-9]*_OT_\w+)\.\w+|(?P<path>\w++(?:\.\w++)++)) expected "
+    r"(?P<wanted>an? \w+|[^,]{1,80})(?: type)?, not \w+"
 )
 GIVEN = re.compile(
     r"expected an? (?P<wanted>\w+) type, not (?P<given>\w+)"
@@ -78,6 +84,15 @@ NO_WRITING = re.compile(
 )
 POSITIONAL = re.compile(r"\bargs execution context is supported")
 NOT_AN_OPERATOR = re.compile(r"BMeshOpsModule: operator \"(?P<name>\w+)\" doesn't exist")
+NO_OPERATOR = re.compile(
+    r"Calling operator \"bpy\.ops\.(?P<called>\w+\.\w+)\" error, could not be found"
+    r"|\bunknown operator '(?P<drawn>\w+\.\w+)'"
+)
+# Not of code, which may call its base's own: ``StrokeShader.__init__(self)``.
+OF_MAKING = re.compile(r"(?<![\w.])(?P<class>[A-Z]\w++)\.__(?:new|init)__(?:\((?:\.\.\.)?\)|:)")
+OF_BMESH = re.compile(
+    r"(?<![\w.])(?P<function>\w++): keyword \"(?P<name>\w+)\" expected (?P<wanted>[^\n]{1,80}?), not (?P<given>\w+)"
+)
 NOT_MADE = re.compile(r"cannot create '(?P<type>[\w.]+)' instances")
 NO_DRAWING = re.compile(r"GPU functions for drawing are not available")
 # Of Mantaflow's own classes: its solver ends with these.
@@ -114,7 +129,10 @@ _WORDING = re.compile(
     |\bNode\ type\ (?=\w+\ undefined)|\bnode\ of\ type\ (?=\w+)|'NoneType'\ object
     |\.\ Did\ you\ mean:\ '[^']*'\?
     |\berror\ setting\ \w+\.\w+
-    |required\ parameter\ "\w+"\ (?:not\ specified|to\ be\ a\ keyword\ argument!?)|Calling\ operator\ (?=")""",
+    |required\ parameter\ "\w+"\ (?:not\ specified|to\ be\ a\ keyword\ argument!?)|Calling\ operator\ (?=")
+    |\brna_uiItem\w+:
+    |"""
+    + _OF_LOG,
     re.VERBOSE,
 )
 

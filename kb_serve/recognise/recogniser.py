@@ -55,6 +55,8 @@ from kb_serve.recognise.resolving.variables import usual_classes
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
+# What the panels of render engines name engines by, whether this Blender has them or not: none is set.
+_FOR_ENGINES = re.compile(r"\bCOMPAT_ENGINES\s*=\s*[{(\[][^})\]]*")
 _FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n/]*/[^'"\n]*\1""")
 _FEW = 3
 _SURE = 0.9
@@ -116,6 +118,7 @@ class Recogniser:
 
     def recognise(self, query: str) -> Recognition:
         """Everything that ``query`` names, surest first."""
+        query = _FOR_ENGINES.sub("COMPAT_ENGINES", query)
         recognition = Recognition()
         own = own_names(query)
         chains = own.without(with_bindings(query, find_chains(query)))

@@ -44,6 +44,7 @@ _OPPOSITES = (
     frozenset({"start", "stop"}),
 )
 _PRONOUNS = frozenset("him it that them these this those".split())  # noqa: SIM905
+_BEFORE_VERBS = frozenset({"for", "of", "with", "without"})  # what stands before verbs that name buttons
 _MOST = 5
 
 
@@ -88,7 +89,9 @@ def parts_of(query: str) -> tuple[QuestionPart, ...]:
         *(
             end
             for start, end in ends
-            if _is_request(text[end:], sure=_is_sure(text[start:end])) and not _undoes(text[end:], text)
+            if _is_request(text[end:], sure=_is_sure(text[start:end]))
+            and not _undoes(text[end:], text)
+            and not _shares_object(text[:start])
         ),
     ]
     if not 1 < len(starts) <= _MOST or not _is_request(text, sure=False):
@@ -110,6 +113,12 @@ def _undoes(clause: str, first: str) -> bool:
     verb, *objects = _unframed(clause).lower().split(maxsplit=2)
     before, _, _ = _unframed(first).lower().partition(" ")
     return frozenset({verb, before}) in _OPPOSITES and not _PRONOUNS.isdisjoint(objects[:1])
+
+
+def _shares_object(before: str) -> bool:
+    """Whether what is before a verb is another one of the same object: ``add and remove``, ``with add and remove``."""
+    *others, last = _unframed(before).lower().split() or [""]
+    return last in _VERBS | _ALSO_NAMES and (not others or others[-1] in _BEFORE_VERBS)
 
 
 def _is_request(text: str, *, sure: bool) -> bool:

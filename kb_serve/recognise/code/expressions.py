@@ -326,7 +326,8 @@ class Expressions:
             recognition.alike_lost = chain.root, lost
         if readings[0].keyed:
             name = next(step.text for step in reversed(chain.steps) if step.kind == "key")
-            recognition.notes.append(self._custom.note(readings[0].keyed, name))
+            is_set = chain.assigned and bool(chain.literal or chain.values)  # and not read by ``+=``
+            recognition.notes.append(self._custom.note(readings[0].keyed, name, assigned=is_set))
         if former := self._old.beneath(chain, readings[0]):
             cls = former.path.rpartition(".")[0]
             recognition.notes.append(

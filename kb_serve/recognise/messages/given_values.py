@@ -63,6 +63,9 @@ class GivenValues:
             yield f"Give the object, not its data: `obj`, whose `.data` is the `{given}`."
         elif given == _OBJECT and self._reader.is_object_data(cls):
             yield "Give the data of the object: `obj.data`."
+        elif wanted == "string":
+            path = given.endswith("Path")
+            yield "Give a text: `str(path)`." if path else "Give a text: `str(value)`."
         elif (wanted, given) == ("int", "float"):
             yield "Give a whole number: `int(value)`, or `round(value)`."
         elif wanted in {"int", "float"} and given in _SEQUENCES:

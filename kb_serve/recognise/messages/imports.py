@@ -7,6 +7,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from kb_serve.recognise import message_patterns as forms
+from kb_serve.recognise.messages.guides import EXTENSIONS, ON_WHEELS, add_guide
 from kb_serve.recognise.resolving.chain_starts import ROOTS
 
 if TYPE_CHECKING:
@@ -22,6 +23,10 @@ _OWN_NAME = (
 )
 _SHORTEST = 2  # letters of a name in ``math`` that scripts import by itself
 _NOT_BLENDERS = {"np": "import numpy as np", "numpy": "import numpy", "Path": "from pathlib import Path"}
+_BROUGHT = (
+    "Blender's Python has no `{name}`: an extension brings a package as a wheel, named in its manifest. A file of the "
+    "add-on's own is imported from its folder, `from . import {name}`."
+)
 _HAS_FILE = "SELECT 1 FROM uses WHERE file = ? OR file LIKE ? LIMIT 1"
 
 
@@ -37,6 +42,7 @@ class Imports:
         for match in forms.first_matches(forms.NO_MODULE, query):
             if not self.tell_if_gone(match["module"], recognition):
                 self._tell_if_renamed(match["module"], recognition)
+                self._tell_how_brought(match["module"], recognition)
         for match in forms.first_matches(forms.NO_IMPORT, query):
             self.tell_if_gone(f"{match['module']}.{match['name']}", recognition)
         for match in forms.first_matches(forms.NOT_DEFINED, query):
@@ -50,6 +56,19 @@ class Imports:
                 f"`{module}` is one of Blender's internal modules, which have an underscore now: `import _{module}`. "
                 "They change without notice."
             )
+
+    def _tell_how_brought(self, module: str, recognition: Recognition) -> None:
+        """How an add-on brings a module that is neither Blender's nor Python's."""
+        package = module.partition(".")[0]
+        is_known = package in sys.stdlib_module_names or self._reader.entry(package) is not None
+        of_blender = (
+            f"addons_core/{package}.py",
+            f"addons_core/{package}/%",
+        )  # an add-on that is not enabled
+        if is_known or not self._reader.entry(EXTENSIONS) or self._reader.rows(_HAS_FILE, *of_blender):
+            return
+        add_guide(ON_WHEELS, self._reader, recognition, 0.9)
+        recognition.notes.append(_BROUGHT.format(name=package))
 
     def _tell_where(self, name: str, recognition: Recognition) -> None:
         """Where a name is imported from that a script uses without having done so."""

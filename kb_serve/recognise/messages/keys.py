@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import COLLECTION, STRUCT, TYPES
 from kb_serve.recognise import message_patterns as forms
+from kb_serve.recognise.messages.guides import EXTENSIONS
 from kb_serve.recognise.removed.newer_nodes import tell_of_the_newer_node
 from kb_serve.recognise.resolving.subscripts import CustomProperties
 
@@ -24,6 +26,18 @@ _IN_EDIT_MODE = (
     "`edit_bones` are empty unless the armature is in Edit Mode: make its object active, then "
     "`bpy.ops.object.mode_set(mode='EDIT')`."
 )
+SLOTTED = f"{TYPES}AnimData.action_slot"  # since actions have slots
+KEY_OF_SLOTS = (
+    'The key of a slot is its `identifier`, two letters for the type of data and the name: `action.slots["OBCube"]`, '
+    "for a slot that is shown as Cube."
+)
+_SLOTS = re.compile(r"(?<!\w)slots\[")
+_ADDONS = re.compile(r"\baddons\[")
+_OF_ADDONS = (
+    "`addons` has the add-ons that are enabled, each by the name of its module; that of an extension is "
+    "`bl_ext.repository.name`. Its own files find it by `context.preferences.addons[__package__]`, an add-on of one "
+    "file by `[__name__]`; the `bl_idname` of the `AddonPreferences` is the same."
+)
 
 
 class Keys:
@@ -38,6 +52,16 @@ class Keys:
         for match in forms.first_matches(forms.NO_KEY, query):
             self._key(match["on"] or _OF_COLLECTIONS, match["name"], query, recognition)
 
+    @cached_property
+    def _of_collections(self) -> tuple[tuple[re.Pattern[str], str], ...]:
+        """What is said of a collection that was asked for a key, by how it is written."""
+        told = [(_EDIT_BONES, _IN_EDIT_MODE)]
+        if self._reader.entry(SLOTTED):
+            told.append((_SLOTS, KEY_OF_SLOTS))
+        if self._reader.entry(EXTENSIONS):
+            told.append((_ADDONS, _OF_ADDONS))
+        return tuple(told)
+
     def _key(self, collection: str, name: str, query: str, recognition: Recognition) -> None:
         """A collection without such an element; it may be a socket's name in another version."""
         if collection == _OF_COLLECTIONS:
@@ -45,8 +69,7 @@ class Keys:
                 f'The collection has no element `{name}`; `.get("{name}")` returns None instead of an error, '
                 "and `.keys()` tells which there are."
             )
-            if _EDIT_BONES.search(query):
-                recognition.notes.append(_IN_EDIT_MODE)
+            recognition.notes += (told for asked, told in self._of_collections if asked.search(query))
             # What was looked into is there.
             within = re.findall(_LOOKED_INTO.format(re.escape(name)), query)
             gone = [one for one in recognition.removed if one.path.rpartition(".")[2] in within]

@@ -10,9 +10,12 @@ from kb_build.symbols.paths import argument_of, plain_path
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.code.wrong_arguments import unknown_keywords
 from kb_serve.recognise.names.corrections import nearest
-from kb_serve.recognise.names.likely_keywords import EMPTY_WORDS
+from kb_serve.recognise.names.likely_keywords import EMPTY_WORDS, likely_parameters
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.messages.named_symbols import NamedSymbols
     from kb_serve.recognise.recognition import Recognition
@@ -20,6 +23,9 @@ if TYPE_CHECKING:
 
 _OF_BMESH = "bmesh.ops."
 _FEW = 3
+_TYPES_OF_RNA = frozenset({"boolean", "collection", "enum", "float", "int", "pointer", "string"})
+_ALIKE = 0.97
+_TAKES_OTHER = 0.8  # how sure an operator is that takes an argument like the one of the message
 _MOST_TAKING = 12  # operators with an argument of one name that are listed
 _NO_OPERATOR_NAMED = (
     "The message does not name the operator that was called: ask for that to see its arguments."
@@ -70,9 +76,32 @@ class Keywords:
                 recognition.add(symbol.path, 0.9, "error message")
                 return
         if shared:
-            recognition.notes.append(_SHARED_NAME.format(name=function))
+            worded_so = [path for path in self._heaviest_first(shared) if not self._is_of_rna(path)]
+            for place, path in enumerate(worded_so[:_FEW]):
+                recognition.add(path, _ALIKE - 0.01 * (place + 1), "error message")
+            if alone := self._taking_alike(worded_so, name):
+                recognition.add(alone.path, _ALIKE, "error message")
+                recognition.notes += unknown_keywords(alone, {name: ""}, self._reader)
+            else:
+                recognition.notes.append(_SHARED_NAME.format(name=function))
             return
         self._keyword_alone(name, recognition)
+
+    def _heaviest_first(self, paths: Iterable[str]) -> list[str]:
+        """Functions, those first that count most."""
+        entries = filter(None, map(self._reader.entry, sorted(paths)))
+        return [entry.path for entry in self._reader.heaviest(entries)]
+
+    def _is_of_rna(self, path: str) -> bool:
+        """Whether a function is one of RNA's, whose messages name its class and word this otherwise."""
+        symbol = self._reader.symbol(path)
+        return symbol is not None and all(one.type in _TYPES_OF_RNA for one in symbol.parameters)
+
+    def _taking_alike(self, functions: Iterable[str], name: str) -> Symbol | None:
+        """The only one of some functions that takes an argument which may be meant by a name."""
+        symbols = filter(None, map(self._reader.symbol, functions))
+        taking = [symbol for symbol in symbols if likely_parameters(symbol, name)]
+        return taking[0] if len(taking) == 1 else None
 
     def _keyword_alone(self, name: str, recognition: Recognition) -> None:
         """An argument that some operator does not take: those that do, and what others have instead."""
@@ -111,6 +140,8 @@ class Keywords:
                 uses = self._reader.use_counts(others)
                 others = sorted(others, key=lambda path: -uses.get(path, 0))[:_FEW]
                 more = " and others"
+            for path in others[:_FEW]:
+                recognition.add(path, _TAKES_OTHER, "error message")
             listed = ", ".join(f"`{path}`" for path in others)
             recognition.notes.append(f"`{word}` is the argument of {listed}{more}.")
 

@@ -8,6 +8,8 @@ from kb_serve.recognise.messages.absent import Absent
 from kb_serve.recognise.messages.argument_places import ArgumentPlaces
 from kb_serve.recognise.messages.assigned_properties import AssignedProperties
 from kb_serve.recognise.messages.attributes import Attributes
+from kb_serve.recognise.messages.bmesh_values import BMeshValues
+from kb_serve.recognise.messages.called_classes import CalledClasses
 from kb_serve.recognise.messages.former_sockets import FormerSockets
 from kb_serve.recognise.messages.freed_data import FreedData
 from kb_serve.recognise.messages.given_values import GivenValues
@@ -18,6 +20,7 @@ from kb_serve.recognise.messages.keys import Keys
 from kb_serve.recognise.messages.keywords import Keywords
 from kb_serve.recognise.messages.lacking_owners import LackingOwners
 from kb_serve.recognise.messages.made_otherwise import MadeOtherwise
+from kb_serve.recognise.messages.manifests import Manifests
 from kb_serve.recognise.messages.multiplications import recognise_multiplications
 from kb_serve.recognise.messages.named_symbols import NamedSymbols
 from kb_serve.recognise.messages.nameless_messages import NamelessMessages
@@ -29,6 +32,7 @@ from kb_serve.recognise.messages.python_types import PythonTypes
 from kb_serve.recognise.messages.refused_calls import RefusedCalls
 from kb_serve.recognise.messages.registration import Registration
 from kb_serve.recognise.messages.unnamed_owners import UnnamedOwners
+from kb_serve.recognise.messages.unregistered_operators import UnregisteredOperators
 from kb_serve.recognise.messages.values import Values
 from kb_serve.recognise.messages.ways_to_run import WaysToRun
 
@@ -62,16 +66,20 @@ class Messages:
             imports.recognise,
             AssignedProperties(reader, symbols).recognise,
             Operators(reader).recognise,
+            UnregisteredOperators(reader).recognise,
             Values(reader, removed, enum_values, symbols).recognise,
             FreedData(reader).recognise,
             MadeOtherwise(reader).recognise,
             WaysToRun(reader).recognise,
+            BMeshValues(reader).recognise,
+            CalledClasses(reader, symbols).recognise,
             NodeTypes(reader, removed).recognise,
             PathsNotFound(reader).recognise,
             recognise_multiplications,
             Registration(reader).recognise,
             GivenValues(reader, absent).recognise,
             RefusedCalls(reader).recognise,
+            Manifests(reader).recognise,
             NamelessMessages(reader).recognise,
         )
         self._explainers: tuple[Callable[[str, Recognition], None], ...] = (

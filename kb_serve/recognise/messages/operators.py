@@ -26,6 +26,12 @@ _READS_ONLY = (
 )
 
 
+# Type in a message → what defines a property of it.
+_DEFINED = {
+    "a string": "bpy.props.StringProperty",
+    "an int": "bpy.props.IntProperty",
+    "a float": "bpy.props.FloatProperty",
+}
 _SAID = {
     "id": "data-block",
     "edit_image": "image",
@@ -60,8 +66,9 @@ class Operators:
         for match in forms.first_matches(forms.WRONG_TYPE, query):
             if match["operator"]:
                 module, _, name = match["operator"].partition("_OT_")
-                if entry := self._reader.entry(f"bpy.ops.{module.lower()}.{name}"):
-                    recognition.add(entry.path, 0.98, "error message")
+                entry = self._reader.entry(f"{OPERATORS}{module.lower()}.{name}")
+                own = _DEFINED.get(match["wanted"], "bpy.props")  # an operator of the script's own
+                recognition.add(entry.path if entry else own, 0.98, "error message")
         if match := forms.NO_WRITING.search(query):
             recognition.notes.append(_READS_ONLY)
             if set_ := self._set(match["owner"] or "", match["name"] or ""):

@@ -13,6 +13,25 @@ if TYPE_CHECKING:
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 
 _FEW = 3
+_OWN = f"{COLLECTION}_idprop."  # the members of the collections of one's own
+# What Python's lists or Blender's own collections call it → what a collection of one's own has for it, and how.
+_ON_OWN = {
+    "new": ("add", "`item = items.add()`"),
+    "append": ("add", "`item = items.add()`"),
+    "insert": ("add", "`items.add()`, then `items.move(len(items) - 1, index)`"),
+    "extend": ("add", "`item = items.add()` for each"),
+    "pop": ("remove", "`items.remove(index)`"),
+    "delete": ("remove", "`items.remove(index)`"),
+    "discard": ("remove", "`items.remove(index)`"),
+    "unlink": ("remove", "`items.remove(index)`"),
+    "index": ("find", '`items.find("name")`, which is -1 for none'),
+    "sort": ("move", "`items.move(from_index, to_index)`"),
+    "reverse": ("move", "`items.move(from_index, to_index)`"),
+}
+_REGISTERED = "bpy.props.CollectionProperty"
+_IF_OWN = "If it is a `CollectionProperty` of your own: {how}."
+_ON_OTHERS = 0.86  # how sure what other collections have by a name is
+_OWN_ALONE = 0.95  # how sure that is where no collection of Blender's has the name
 
 
 class UnnamedOwners:
@@ -38,11 +57,22 @@ class UnnamedOwners:
         members = [entry for entry in self._reader.by_name(name) if entry.kind in {"property", "function"}]
         having = self._reader.heaviest(entry for entry in members if entry.owner in self._collections)
         for rank, entry in enumerate(having[:_FEW]):
-            recognition.add(entry.path, 0.86 - 0.01 * rank, "same name")
+            recognition.add(entry.path, _ON_OTHERS - 0.01 * rank, "same name")
+        self._of_ones_own(name, recognition, sure=_ON_OTHERS - 0.005 if having else _OWN_ALONE)
         if having:
             listed = ", ".join(f"`{self._collections[entry.owner]}.{name}`" for entry in having[:_FEW])
             more = f" and {len(having) - _FEW} more" if len(having) > _FEW else ""
             recognition.notes.append(f"This collection has no `{name}`; others have: {listed}{more}.")
+
+    def _of_ones_own(self, name: str, recognition: Recognition, *, sure: float) -> None:
+        """What a collection that an add-on registers has for what was called."""
+        if name not in _ON_OWN:
+            return
+        meant, how = _ON_OWN[name]
+        recognition.notes.append(_IF_OWN.format(how=how))
+        # Not every version's interface tells of the class.
+        found = next(filter(self._reader.entry, (_OWN + meant, f"{COLLECTION}.{meant}")), _REGISTERED)
+        recognition.add(found, sure, "error message")
 
     @cached_property
     def _collections(self) -> dict[str, str]:

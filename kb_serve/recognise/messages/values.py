@@ -29,6 +29,7 @@ _TAKEN_BY = "`{name}` is a value of {owners}."
 _NOT_NOW = "`{name}` is a value of `{owner}`, which present data do not allow."
 _NEVER = "RNA lists `{name}` for `{owner}`, and no {thing} comes to have it.{instead}"
 _OF_OPERATORS = "to operator properties"
+_OF_PROPERTIES = "item.attr = val"
 _OF_CLASSES = "validating class"  # what Blender says of classes that it is given to register
 
 
@@ -61,6 +62,8 @@ class Values:
             if not called and _OF_OPERATORS in query:
                 called = OPERATORS
             owners = self._enum_values.taking(items, called)
+            if _OF_PROPERTIES in query:  # nothing was called
+                owners = [owner for owner in owners if "(" not in owner] or owners
             if _OF_CLASSES in query:
                 owners = self._of_classes(owners) or owners
             owners = self._meant_first(owners[:_MOST_OWNERS], match["name"], items, query)

@@ -28,6 +28,7 @@ _LONG = 8  # letters of a name that is compared with all others
 _CLOSE = 0.85
 _FEW_BEGIN_SO, _FIRST_WORD = 3, 4  # names with the first word of one, and the letters that it has at least
 _WORD = 3  # letters from which on a word says something
+_UNDOES = ("de", "dis", "un")  # how words begin that undo others
 _TYPO = 0.8  # similarity of a whole name from which on it may be misspelt
 _TYPO_ACROSS_WORDS = 0.88  # … where it has more or fewer words
 _TYPO_IN_WORD = 0.6  # … and of each of its words
@@ -86,7 +87,7 @@ def nearest(written: str, names: Iterable[str], limit: int = 3) -> list[tuple[st
     """The names that are similar enough to be meant, best first."""
     left, mine = key(written), set(words(written))
     scored = [(name, _alike(left, mine, name)) for name in names]
-    likely = [row for row in scored if row[1] >= LIKELY]
+    likely = [row for row in scored if row[1] >= LIKELY and not are_opposite(written, row[0])]
     return sorted(likely, key=lambda row: (-row[1], len(row[0]), row[0]))[:limit]
 
 
@@ -115,6 +116,15 @@ def shortened(written: str, names: Iterable[str]) -> list[str]:
     return found if len(found) <= _FEW_BEGIN_SO else []
 
 
+def are_opposite(name: str, other: str) -> bool:
+    """Whether one of two names undoes what the other does: ``unsubscribe`` and ``subscribe``; not ``unselect`` and
+    ``select_set``, which does both.
+    """
+    theirs = words(other)
+    pairs = ((a, b) for a in words(name) for b in theirs)
+    return "set" not in theirs and any(a == un + b or b == un + a for a, b in pairs for un in _UNDOES)
+
+
 def is_misspelling(written: str, name: str, vocabulary: Container[str] = ()) -> bool:
     """Whether ``written`` can only be ``name`` with a slip of the fingers, not another word: ``location_x`` is no
     misspelt ``location_y``, and ``groups`` no ``node_groups``.
@@ -132,6 +142,8 @@ def is_misspelling(written: str, name: str, vocabulary: Container[str] = ()) -> 
         contained = set(mine) < set(theirs) or set(theirs) < set(mine)
         return alike >= _TYPO_ACROSS_WORDS and not contained
     pairs = [(a, b) for a, b in zip(mine, theirs, strict=True) if a != b]
+    if are_opposite(written, name):
+        return False
     if any(a in vocabulary and not (a.startswith(b) or b.startswith(a)) for a, b in pairs):
         return False
     if OSA.distance(left, right) == 1:

@@ -90,8 +90,17 @@ _PLANE_TRACK_ADDED = Elsewhere(
     "bpy.ops.clip.create_plane_track",
     "In a clip editor `bpy.ops.clip.create_plane_track()` makes one of four or more tracks that are selected.",
 )
+_SELECTED = Elsewhere(f"{T}Object.select_set", "An object is selected by itself: `obj.select_set(True)`.")
+_DESELECTED = Elsewhere(
+    f"{T}Object.select_set", "An object is deselected by itself: `obj.select_set(False)`."
+)
 # Collection → where elements are added.
 ADDED_BY = {
+    f"{T}LayerObjects.selected": _SELECTED,
+    f"{T}PointCloud.points": Elsewhere(
+        f"{T}PointCloud.resize",
+        "The point cloud sets how many there are: `pointcloud.resize(3)`.",
+    ),
     f"{T}BoidState.rules": Elsewhere(
         "bpy.ops.boid.rule_add",
         f"An operator adds one: {ADDS_BOID_RULE}.",
@@ -136,6 +145,7 @@ ADDED_BY = {
 }
 # Collection → where elements are removed.
 REMOVED_BY = {
+    f"{T}LayerObjects.selected": _DESELECTED,
     f"{T}Object.material_slots": Elsewhere(
         f"{T}IDMaterials.pop",
         "The object's data has the materials: `obj.data.materials.pop(index=0)` removes one with its slot (the last "

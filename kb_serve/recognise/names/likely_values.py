@@ -72,8 +72,14 @@ def _with_alike(said: str, similar: list[str], items: Iterable[str]) -> list[str
 
 
 def likely_items(written: str, items: Sequence[EnumItem], reader: BaseReader) -> list[str]:
-    """The same of items with their labels: where none is alike, what Blender says that things called so are."""
-    return likely_values(written, [item.identifier for item in items]) or explaining(written, items, reader)
+    """The same of items with their labels: where none is alike, the one that is labelled so, ``DEL`` for ``DELETE``, or
+    else what Blender says that things called so are.
+    """
+    return (
+        likely_values(written, [item.identifier for item in items])
+        or [item.identifier for item in items if key(item.name) == key(written)]
+        or explaining(written, items, reader)
+    )
 
 
 def explaining(written: str, items: Iterable[EnumItem], reader: BaseReader) -> list[str]:

@@ -116,15 +116,17 @@ class CustomProperties:
         """A sentence on a registered property that is not found in brackets; empty where it is."""
         return _REGISTERED.format(name=name) if self._are_apart and name.isidentifier() else ""
 
-    def note(self, cls: str, name: str) -> str:
-        """A sentence on ``x["name"]``, where ``x`` is of a class that takes custom properties."""
+    def note(self, cls: str, name: str, *, assigned: bool = False) -> str:
+        """A sentence on ``x["name"]``, read or ``assigned``, where ``x`` is of a class that takes custom properties."""
         if cls in OF_NODES_MODIFIER:
             return self.on_inputs()
         if name == "_RNA_UI":
             return _LIMITED
-        said = (
-            f'`["{name}"]` is a custom property of `{cls}`, not one of its attributes: assigning makes it, reading '
-            f'raises KeyError until then; `.get("{name}")` returns None instead.'
+        said = f'`["{name}"]` is a custom property of `{cls}`, not one of its attributes: assigning makes it'
+        said += (
+            "."
+            if assigned
+            else f', reading raises KeyError until then; `.get("{name}")` returns None instead.'
         )
         return f"{said} {self.on_registered(name)}".rstrip()
 

@@ -246,7 +246,26 @@ def test_a_new_actions_slot_is_made_by_keys_or_by_hand(reader: BaseReader) -> No
     assert data.action_slot is not None
 
 
+def test_a_slot_is_found_by_its_identifier(reader: BaseReader) -> None:
+    assert 'slots["OBCube"]' in said(reader, "bpy.types.Action.slots")
+    action = bpy.data.actions.new("a")
+    slot = action.slots.new("OBJECT", "Cube")
+    assert (slot.identifier, slot.name_display) == ("OBCube", "Cube")
+    assert action.slots["OBCube"] == slot
+    assert action.slots.get("Cube") is None
+
+
 # What docstrings have otherwise
+
+
+def test_arrays_of_properties_have_32_bits(reader: BaseReader) -> None:
+    numpy = pytest.importorskip("numpy")
+    pixels = bpy.data.images.new("i", 2, 2).pixels
+    for name in ("foreach_get", "foreach_set"):
+        assert "arrays of 32-bit floats alone" in said(reader, f"{TYPES}bpy_prop_array.{name}")
+        getattr(pixels, name)(numpy.zeros(16, dtype=numpy.float32))
+        with pytest.raises(TypeError, match="incorrect sequence item type: d"):
+            getattr(pixels, name)(numpy.zeros(16))
 
 
 def test_what_docstrings_have_otherwise_is_told_as_it_is(reader: BaseReader) -> None:

@@ -65,6 +65,7 @@ def test_a_slip_of_the_fingers_is_a_misspelling(written: str, name: str) -> None
     [
         ("groups", "node_groups"), ("use_limit_x", "use_limit_y"), ("frame_start", "frame_end"),
         ("select", "select_set"), ("quality", "velocity"), ("use_min_x", "use_max_x"), ("draw_type", "display_type"),
+        ("unsubscribe_rna", "subscribe_rna"),
         ("shadow_min", "shadow_max"), ("collection_inputs", "collection_outputs"), ("", "x"),
     ],
 )  # fmt: skip

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 # Collection → (what it lacks, statements that add elements; their count before and after), then the same for removing.
 _ADDED = {
+    "LayerObjects.selected": ("bpy.context.view_layer.objects.selected", "other.select_set(True)", 1),
+    "PointCloud.points": ("bpy.data.pointclouds[0].points", "bpy.data.pointclouds[0].resize(3)", 3),
     "BoidState.rules": (
         "psys.settings.boids.states[0].rules",
         "with bpy.context.temp_override(particle_settings=psys.settings): "
@@ -84,6 +86,7 @@ _LOST = (
     "bmesh.ops.delete(bm, geom=[bm.verts[0]], context='VERTS'); bm.to_mesh(mesh)"
 )
 _REMOVED = {
+    "LayerObjects.selected": ("bpy.context.view_layer.objects.selected", "ob.select_set(False)", -1),
     "Object.material_slots": ("ob.material_slots", "remove_slots()", -1),
     "Key.key_blocks": (
         "mesh.shape_keys.key_blocks",
@@ -196,6 +199,7 @@ for collection, change in json.load(open(sys.argv[-1])):
     valued, mixed, linked_to = (node_tree.nodes.new(f"ShaderNode{kind}") for kind in ("Value", "Math", "Math"))
     node_tree.links.new(valued.outputs[0], linked_to.inputs[0])
     text = bpy.data.texts.new("t")
+    bpy.data.pointclouds.new("p")
     drawing = bpy.data.grease_pencils.new("g").layers.new("l").frames.new(1).drawing
     armature = bpy.data.armatures.new("a")
     rig = linked("Rig", armature)
@@ -203,6 +207,8 @@ for collection, change in json.load(open(sys.argv[-1])):
     bone = armature.edit_bones.new("Root")
     bone.tail = (0, 0, 1)
     bpy.ops.object.mode_set(mode="OBJECT")
+    for one in scene.objects:
+        one.select_set(one == ob)
     own = [name for name in ("new", "add", "append", "link", "remove") if hasattr(eval(collection), name)]
     before = len(eval(collection))
     exec(change)
@@ -249,6 +255,8 @@ def test_all_are_tried_and_known(kb: KnowledgeBase) -> None:
         ("obj.material_slots.new()", "bpy.types.IDMaterials.append"),
         ("obj.data.shape_keys.key_blocks.remove(kb)", "bpy.types.Object.shape_key_remove"),
         ('armature.bones.new("Bone")', "bpy.types.ArmatureEditBones.new"),
+        ('bpy.data.pointclouds.new("P").points.add(3)', "bpy.types.PointCloud.resize"),
+        ("context.view_layer.objects.selected.add(ob)", "bpy.types.Object.select_set"),
         ("AttributeError: 'ParticleSystems' object has no attribute 'new'", "bpy.types.ObjectModifiers.new"),
     ],
 )

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     ("query", "said"),
     [
         ("obj.display_type = 'WIREFRAME'", "Closest: `'WIRE'`"),
+        ("km.keymap_items.new('object.delete', 'DELETE', 'PRESS')", "Closest: `'DEL'`."),  # labelled so
         # What is refused a second time only, or in a mode, is taken.
         ("fcurve.modifiers.new(type='CYCLE')", "Closest: `'CYCLES'`."),
         ("obj.modifiers.new('c', 'CLOTHS')", "Closest: `'CLOTH'`."),

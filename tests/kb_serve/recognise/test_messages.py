@@ -10,9 +10,11 @@ import pytest
 from told_by_blender import told_by_blender
 
 from kb_serve.recognise.message_patterns import prose_of
+from kb_serve.recognise.names.layers import in_layers
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
+    from kb_serve.reader import BaseReader
 
 SPHERE = "bpy.ops.mesh.primitive_uv_sphere_add"
 FIRST = {
@@ -60,6 +62,31 @@ FIRST = {
     "ValueError: 1-2 args execution context is supported": "bpy.types.Context.temp_override",
     "ReferenceError: BMesh data of type BMesh has been removed": "bmesh.types.BMesh.free",
     "ReferenceError: StructRNA of type Object has been removed": "bpy.types.BlendDataObjects.remove",
+    'AttributeError: bpy_prop_collection: attribute "extend" not found': "bpy.types.bpy_prop_collection_idprop.add",
+    'AttributeError: bpy_prop_collection: attribute "index" not found': "bpy.types.bpy_prop_collection.find",
+    'AttributeError: Calling operator "bpy.ops.foo.nine" error, could not be found': "bpy.utils.register_class",
+    "rna_uiItemO: unknown operator 'foo.bar'": "bpy.utils.register_class",
+    "rna_uiItemO: unknown operator 'object.delet'": "bpy.ops.object.delete",
+    'AttributeError: Calling operator "bpy.ops.import_scene.obj" error, could not be found': "bpy.ops.wm.obj_import",
+    "AttributeError: 'Scene' object has no attribute 'my_props'": "bpy.props.PointerProperty",
+    "rna_uiItemR: property not found: Scene.my_prop": "bpy.props.PointerProperty",
+    "TypeError: GPUOffScreen.__new__() got an unexpected keyword argument 'samples'": "gpu.types.GPUOffScreen",
+    "TypeError: GPUTexture.__new__() takes exactly 1 positional argument (2 given)": "gpu.types.GPUTexture",
+    "TypeError: IndexBuf.__new__: expected a sequence, got int": "gpu.types.GPUIndexBuf",
+    'TypeError: delete: keyword "context" expected a string, not int': "bmesh.ops.delete",
+    "TypeError: load() got an unexpected keyword argument 'overrides'": "bpy.types.BlendDataLibraries.load",
+    "TypeError: 'relative_remap' is an invalid keyword argument for write()": "bpy.types.BlendDataLibraries.write",
+    "AttributeError: 'BMLoop' object has no attribute 'uv'": "bmesh.types.BMLayerAccessLoop.uv",
+    "AttributeError: module 'msgbus' has no attribute 'unsubscribe_rna'": "bpy.msgbus.publish_rna",
+    "TypeError: bpy_struct: item.attr = val: enum \"STR\" not found in ('FLOAT', 'INT', 'VECTOR', 'RGBA', 'STRING')": (
+        "bpy.types.NodeClosureOutputItem.socket_type"
+    ),
+    "TypeError: Converting py args to operator properties: FOO_OT_one.filepath expected a string type, not PosixPath": (
+        "bpy.props.StringProperty"
+    ),
+    'TypeError: Converting py args to operator properties:: keyword "toggle_mode" unrecognized': (
+        "bpy.ops.object.mode_set"
+    ),
     # Classes that are spelled like a module, or like a value.
     "'BMesh' object has no attribute 'calc_tessface'": "bmesh.types.BMesh.calc_loop_triangles",
     "'BMesh' object has no attribute 'select_flush_mode'": "bmesh.types.BMesh.select_flush_mode",
@@ -292,6 +319,58 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
         ("AttributeError: 'str' object has no attribute 'location'", '`bpy.data.objects["…"]`'),
         ("AttributeError: type object 'Object' has no attribute 'mine'", "`bpy.types.Object` has no `mine`"),
         (
+            'AttributeError: bpy_prop_collection: attribute "insert" not found',
+            "If it is a `CollectionProperty` of your own: `items.add()`, then `items.move(len(items) - 1, index)`.",
+        ),
+        (
+            'AttributeError: Calling operator "bpy.ops.foo.nine" error, could not be found',
+            'of the class with `bl_idname = "foo.nine"` did not run here.',
+        ),
+        (
+            "AttributeError: type object 'Scene' has no attribute 'my_prop'",
+            "`bpy.types.Scene.my_prop = bpy.props.PointerProperty(type=…)`",
+        ),
+        (
+            "TypeError: bpy_struct: item.attr = val: Image.filepath expected a string type, not PosixPath",
+            "Give a text: `str(path)`.",
+        ),
+        (
+            "TypeError: bpy_struct: item.attr = val: Object.name expected a string type, not int",
+            "Give a text: `str(value)`.",
+        ),
+        (
+            "TypeError: write() got an unexpected keyword argument 'relative_remap'",
+            "`bpy.types.BlendDataLibraries.write` takes no `relative_remap`; closest: `path_remap`.",
+        ),
+        (
+            "KeyError: 'bpy_prop_collection[key]: key \"my_addon\" not found', "
+            "context.preferences.addons[__name__].preferences",
+            "that of an extension is `bl_ext.repository.name`.",
+        ),
+        (
+            'KeyError: \'bpy_prop_collection[key]: key "Cube" not found\', action.slots["Cube"]',
+            '`action.slots["OBCube"]`',
+        ),
+        (
+            "key \"permissions\" invalid: permissions must be a table of strings, not a <class 'list'>",
+            '`[permissions]`, below it `network = "Loads maps from the net"`.',
+        ),
+        ('permissions = ["network"]', "`permissions` is a table"),
+        ('missing "maintainer"', "`blender --command extension validate`"),
+        ("ModuleNotFoundError: No module named 'requests'", "an extension brings a package as a wheel"),
+        (
+            "TypeError: GPUFrameBuffer.__new__() got an unexpected keyword argument 'color'",
+            "`gpu.types.GPUFrameBuffer` takes no `color`; closest: `color_slots`.",
+        ),
+        (
+            'TypeError: triangulate: keyword "quad_method" expected a string, not int',
+            "`bmesh.ops.triangulate(quad_method=…)` takes one of `'BEAUTY'`, `'FIXED'`",
+        ),
+        (
+            'TypeError: bevel: keyword "geom" expected a bmesh sequence, list, (htype, flag) pair, not int',
+            "takes a list of the bmesh's own elements, as `bm.faces[:]`.",
+        ),
+        (
             'TypeError: ObjectModifiers.new(): error with argument 2, "type" -  enum "SUBDIVISION" not found in '
             "('BEVEL', 'BOOLEAN', 'MULTIRES', 'SUBSURF')",
             "`SUBDIVISION` is not an item of this enum; of that label: `SUBSURF`.",
@@ -300,6 +379,57 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
 )
 def test_notes_explain_error_messages(kb: KnowledgeBase, message: str, said: str) -> None:
     assert said in "\n".join(kb.query(message).notes)
+
+
+@pytest.mark.parametrize(
+    ("message", "denied"),
+    [
+        ("AttributeError: 'Scene' object has no attribute 'my_props'", "Closest"),
+        (
+            "bpy.rna          | WARNING current value '5' matches no enum in 'Scene', 'Scene', 'e'",
+            "has no `rna`",
+        ),
+        ("bpy.msgbus.unsubscribe_rna(owner=f)", "read as"),
+        ("def __init__(self):\n    StrokeShader.__init__(self)\n    raise TypeError('x')", "is called as"),
+        ("ModuleNotFoundError: No module named 'bgl'", "as a wheel"),
+        ("WARN (bpy.rna): current value '0' matches no enum in 'Scene', '', 'my_enum'", "has no `rna`"),
+        (
+            'AttributeError: Calling operator "bpy.ops.import_scene.obj" error, could not be found',
+            "is registered",
+        ),
+    ],
+)
+def test_what_messages_do_not_say_is_not_told(kb: KnowledgeBase, message: str, denied: str) -> None:
+    assert denied not in "\n".join(kb.query(message).notes)
+
+
+@pytest.mark.blender
+def test_what_elements_of_a_bmesh_lack_lies_in_a_layer(reader: BaseReader) -> None:
+    pytest.importorskip("bpy")
+    bmesh = importlib.import_module("bmesh")
+    bm = bmesh.new()
+    bm.faces.new([bm.verts.new(co) for co in ((0, 0, 0), (1, 0, 0), (0, 1, 0))])
+    found = 0
+    assert not list(in_layers("bmesh.types.BMVert", "co", reader))
+    for owner in ("BMVert", "BMEdge", "BMFace", "BMLoop"):
+        for name in reader.members(owner.replace("BM", "bmesh.types.BMLayerAccess")):
+            ((_, how),) = in_layers(f"bmesh.types.{owner}", name, reader)
+            _, setting, _, reading, _ = how.split("`")
+            names = {"bm": bm}
+            exec(setting, names)
+            for sequence in (bm.verts, bm.edges, bm.faces):
+                sequence.ensure_lookup_table()
+            element = {"BMVert": bm.verts[0], "BMEdge": bm.edges[0], "BMFace": bm.faces[0]}.get(owner)
+            names[owner[2:].lower()] = element or bm.faces[0].loops[0]
+            assert eval(reading, names) is not None
+            found += 1
+    assert found
+
+
+def test_the_place_of_a_call_in_a_message_is_none_of_its_words(kb: KnowledgeBase) -> None:
+    message = "RuntimeError: Error: Python: TypeError: 'NoneType' object is not iterable\n"
+    located = kb.query(f"{message}Location: /opt/blender/5.0/scripts/modules/bpy/ops.py:109")
+    assert [hit.id for hit in located.hits] == [hit.id for hit in kb.query(message).hits]
 
 
 @pytest.mark.parametrize(
@@ -691,6 +821,18 @@ def test_removed_enum_values_are_noted(kb: KnowledgeBase) -> None:
     answer = kb.query("sky.sky_type = 'NISHITA'")
     assert answer.hits[0].id == "bpy.types.ShaderNodeTexSky.sky_type"
     assert any("NISHITA" in note and "SINGLE_SCATTERING" in note for note in answer.notes)
+
+
+def test_code_that_asks_an_element_for_a_layer_is_told_so(kb: KnowledgeBase) -> None:
+    answer = kb.query("bm.faces[0].loops[0].uv")
+    assert answer.hits[0].id == "bmesh.types.BMLayerAccessLoop.uv"
+    assert not any("Closest" in note for note in answer.notes)
+
+
+def test_the_engines_that_a_panel_is_for_are_none_that_is_set(kb: KnowledgeBase) -> None:
+    panel = "COMPAT_ENGINES = {'BLENDER_RENDER', 'BLENDER_EEVEE'}"
+    assert not any("BLENDER_RENDER" in note for note in kb.query(panel).notes)
+    assert any("BLENDER_RENDER" in note for note in kb.query(f"{panel}\nx.engine = 'BLENDER_RENDER'").notes)
 
 
 def test_preferences_of_an_add_on_are_reached_through_it(kb: KnowledgeBase) -> None:

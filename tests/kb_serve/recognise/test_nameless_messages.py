@@ -128,9 +128,24 @@ armature(); bpy.ops.pose.constraint_add(type="IK")
 bpy.msgbus.subscribe_rna(key=ob, owner=ob, args=(), notify=ob.select_get)
 bpy.utils.units.to_string("LENGTH", "METRIC", 3)
 bpy.utils.units.to_value("METRIC", "LENGHT", "3mm")
+registered("Panel", name="my_PT_panel", bl_space_type="VIEW_3D", bl_region_type="UI")
+bpy.types.Scene.made = bpy.props.CollectionProperty(type=bpy.types.Object)
+bpy.types.Scene.made = bpy.props.PointerProperty(type=bpy.types.MeshVertex)
+bpy.types.Scene.made = bpy.props.PointerProperty(type=type("Unknown", (bpy.types.PropertyGroup,), {}))
+bpy.app.timers.unregister(print)
+del bpy.data.objects["Cube"]
+bpy.types.SpaceView3D.draw_handler_add(print, (), "WINDOW", "POST_DRAW")
+bpy.types.SpaceView3D.draw_handler_add(print, (), "VIEW", "POST_PIXEL")
+bpy.types.SpaceView3D.draw_handler_add(print, None, "WINDOW", "POST_PIXEL")
+bpy.types.SpaceView3D.draw_handler_remove(None, "WINDOW")
+bpy.data.images.new("i", 8, 8).pixels.foreach_get(numpy.empty(256))
+bpy.data.images.new("i", 8, 8).pixels.foreach_set([0.0] * 3)
+stored()
+bpy.context.preferences.addons["cycles"].preferences.compute_device_type = "GPU"
 """.splitlines()
 _RUN = """
 import json, os, sys, tempfile
+import numpy
 import bpy, bmesh, mathutils
 import _bpy_restrict_state
 
@@ -161,11 +176,11 @@ def nodes():
 
 made = []
 
-def registered(base, **members):
+def registered(base, name="Made", **members):
     members = {"bl_label": "x", "draw": lambda self, context: None, **members}
     if base == "Operator":
         members.setdefault("bl_idname", "wm.made")
-    made.append(type("Made", (getattr(bpy.types, base),), members))
+    made.append(type(name, (getattr(bpy.types, base),), members))
     bpy.utils.register_class(made[-1])
 
 def grouped():
@@ -215,6 +230,13 @@ def film():
     settings.media_type = "VIDEO"
     settings.file_format = "FFMPEG"
 
+def stored():
+    for name, number in (("A", 1), ("B", 2)):
+        bpy.types.Scene.chosen = bpy.props.EnumProperty(items=[(name, name, "", number)])
+        if name == "A":
+            scene.chosen = name
+    assert scene.chosen == ""
+
 restriction = []
 printed = tempfile.TemporaryFile()
 for stream in (1, 2):
@@ -242,6 +264,8 @@ for line in json.load(open(sys.argv[-1])):
         said = ""
     except Exception as error:
         said = f"{type(error).__name__}: {str(error).strip()}"
+        if "(see previous error)" in said:
+            said = f"{said_by_printing().strip()} {said}"
     while restriction:
         restriction.pop().__exit__(None, None, None)
     sys.stdout.flush()

@@ -160,6 +160,13 @@ def test_classes_take_custom_properties_where_blender_does(reader: BaseReader, t
     }
 
 
+def test_only_what_reads_a_custom_property_is_told_that_it_may_lack(kb: KnowledgeBase) -> None:
+    for query, is_read in (('ob["p"] = 1.0', False), ('print(ob["p"])', True), ('ob["p"] += 1', True)):
+        notes = "\n".join(kb.query(query).notes)
+        assert "is a custom property of `bpy.types.Object`" in notes
+        assert ("reading raises KeyError" in notes) is is_read, query
+
+
 def test_a_property_that_is_registered_is_no_custom_one(kb: KnowledgeBase) -> None:
     notes = kb.query('scene["prop"] KeyError after registering with bpy.props').notes
     assert any("it is the attribute `.prop`" in note for note in notes)

@@ -33,6 +33,13 @@ _ONLY_DEFINED = (
 )
 CUSTOM_PROPERTIES = (
     NamelessMessage(
+        ("current value '", "' matches no enum in '"),
+        ("bpy.props.EnumProperty",),
+        "The number that is stored is none of the items any more, and the property reads as an empty text: the items "
+        "changed, or a function gives other ones now. Give each item a number of its own that stays, the last of its "
+        "tuple, and assign a valid item.",
+    ),
+    NamelessMessage(
         ("value to the existing '", "Group IDProperty"),
         ("bpy.props.PointerProperty", f"{T}PropertyGroup", f"{T}ID.bl_system_properties_get"),
         "The group of a `PointerProperty` cannot be put in another one's place: set its members as attributes "

@@ -37,6 +37,19 @@ PYTHON = (
         PLAIN_FUNCTION,
     ),
     NamelessMessage(
+        ("function is not registered",),
+        ("bpy.app.timers.unregister", "bpy.app.timers.is_registered", "bpy.app.timers.register"),
+        "This very function runs in no timer (a second `lambda` or method is another one), or it has returned None, "
+        "which ends it: `if bpy.app.timers.is_registered(f): bpy.app.timers.unregister(f)`.",
+    ),
+    NamelessMessage(
+        ("del bpy_prop_collection[key]: not supported",),
+        ("bpy.props.CollectionProperty", f"{COLLECTION}_idprop.remove", COLLECTION),
+        "Collections have `remove()` instead: one of a `CollectionProperty` takes the index, "
+        '`items.remove(items.find("name"))`, those of Blender the thing itself, '
+        '`bpy.data.objects.remove(bpy.data.objects["name"])`.',
+    ),
+    NamelessMessage(
         ("Unknown unit system specified: ",),
         ("bpy.utils.units.to_value", "bpy.utils.units.to_string", "bpy.utils.units.systems"),
         "The unit system comes first, then the category: `to_value('METRIC', 'LENGTH', '3mm')`. Systems are 'NONE', "

@@ -28,6 +28,12 @@ REGISTRATION = (
         "a name.",
     ),
     NamelessMessage(
+        (" have upper case alpha", "numeric prefix"),
+        (f"{T}Panel.bl_idname", f"{T}Menu.bl_idname", f"{T}UIList.bl_idname"),
+        "The `bl_idname`, or the class's name where it has none, begins with capitals: `MY_PT_panel`, `MY_MT_menu`, "
+        "`MY_UL_list`. It is a warning: the class is registered all the same.",
+    ),
+    NamelessMessage(
         ("Registering panel class: '", "' has category '"),
         (f"{T}Panel.bl_region_type", f"{T}Panel.bl_category"),
         "Only panels of a sidebar have a category, the tab that they stand in: `bl_region_type = 'UI'`. Panels of "
@@ -44,6 +50,26 @@ REGISTRATION = (
         (f"{T}Operator.bl_idname",),
         "An operator's `bl_idname` is two names with one dot between, in small letters: "
         '`bl_idname = "object.my_tool"`.',
+    ),
+    NamelessMessage(
+        ("CollectionProperty(...) expected an RNA type derived from ID Property Group",),
+        ("bpy.props.CollectionProperty", f"{T}PropertyGroup", "bpy.props.PointerProperty"),
+        "`type` of a CollectionProperty is a class of one's own, `class Item(bpy.types.PropertyGroup)`, registered "
+        "before. To hold objects or other data-blocks, give it a pointer: "
+        "`ob: bpy.props.PointerProperty(type=bpy.types.Object)`.",
+    ),
+    NamelessMessage(
+        ("PointerProperty(...) expected an RNA type derived from ID or ID Property Group",),
+        ("bpy.props.PointerProperty", f"{T}PropertyGroup", f"{T}ID"),
+        "`type` of a PointerProperty is a kind of data-block (`bpy.types.Object`, `bpy.types.Material` …), or a class "
+        "of one's own, `class Settings(bpy.types.PropertyGroup)`, registered before. Nothing else can be pointed at: "
+        "keep its name or index.",
+    ),
+    NamelessMessage(
+        ("Property(...)", "expected an RNA type, failed with: "),
+        ("bpy.utils.register_class", "bpy.props.PointerProperty", "bpy.props.CollectionProperty"),
+        "The class in `type` is not registered yet: `bpy.utils.register_class(Settings)` comes first, then the "
+        "property and the classes that hold it.",
     ),
     NamelessMessage(
         ("Function.result expected a set, not a NoneType",),

@@ -6,7 +6,52 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
 _O = "bpy.ops.object."
+OF_32_BITS = (
+    "`foreach_get()` and `foreach_set()` of a property take arrays of 32-bit floats alone, of one with whole numbers "
+    "32-bit integers: `numpy.empty(len(image.pixels), dtype=numpy.float32)`, `array.astype(numpy.float32)`."
+)
 RENDERING = (
+    NamelessMessage(
+        ("enum identifier: '", "'POST_PIXEL'"),
+        (f"{T}Space.draw_handler_add",),
+        "The last argument says when to draw: 'POST_PIXEL' over the editor, in pixels of the region; 'POST_VIEW' with "
+        "the scene, in its coordinates; 'PRE_VIEW' before it; 'BACKDROP' in the node editor.",
+    ),
+    NamelessMessage(
+        ("enum identifier: '", "'WINDOW', 'HEADER'"),
+        (f"{T}Space.draw_handler_add", f"{T}Region.type"),
+        "The third argument is the type of the region that is drawn in, mostly 'WINDOW': "
+        "`draw_handler_add(function, (), 'WINDOW', 'POST_PIXEL')`.",
+    ),
+    NamelessMessage(
+        ("draw_handler_add() argument 3 must be tuple",),
+        (f"{T}Space.draw_handler_add",),
+        "What the function is to be given is a tuple, empty for nothing: "
+        "`draw_handler_add(function, (), 'WINDOW', 'POST_PIXEL')`.",
+    ),
+    NamelessMessage(
+        ("callback_remove(handler): ", "invalid or already removed"),
+        (f"{T}Space.draw_handler_remove", f"{T}Space.draw_handler_add"),
+        "Keep what `draw_handler_add()` returns, remove it once, with the same region type, and forget it: "
+        "`draw_handler_remove(handle, 'WINDOW')`, `handle = None`.",
+    ),
+    NamelessMessage(
+        ('enum "', "\" not found in ('NONE', 'CUDA'"),
+        (f"{T}CyclesPreferences.compute_device_type", f"{T}CyclesRenderSettings.device"),
+        "`compute_device_type` of the add-on's preferences takes the kind of device that the message lists; 'NONE' is "
+        "the CPU alone. 'GPU' and 'CPU' are values of `scene.cycles.device`.",
+    ),
+    NamelessMessage(
+        ("incorrect sequence item type: ",),
+        (f"{T}bpy_prop_array.foreach_get", f"{T}bpy_prop_array.foreach_set", f"{T}Image.pixels"),
+        OF_32_BITS,
+    ),
+    NamelessMessage(
+        ("expected sequence size ", ", got "),
+        (f"{T}bpy_prop_array.foreach_set", f"{T}bpy_prop_array.foreach_get", f"{T}Image.pixels"),
+        "It wants one flat row of as many numbers as `len(image.pixels)`, which is width × height × channels: "
+        "`array.ravel()`.",
+    ),
     NamelessMessage(
         ("Cannot render, no camera",),
         (f"{T}Scene.camera", f"{T}BlendDataCameras.new"),
