@@ -76,7 +76,7 @@ FIRST = {
     'TypeError: delete: keyword "context" expected a string, not int': "bmesh.ops.delete",
     "TypeError: load() got an unexpected keyword argument 'overrides'": "bpy.types.BlendDataLibraries.load",
     "TypeError: 'relative_remap' is an invalid keyword argument for write()": "bpy.types.BlendDataLibraries.write",
-    "AttributeError: 'BMLoop' object has no attribute 'uv'": "bmesh.types.BMLayerAccessLoop.uv",
+    "AttributeError: 'BMLoop' object has no attribute 'uv'": "bmesh.types.BMLoopUV.uv",
     "AttributeError: module 'msgbus' has no attribute 'unsubscribe_rna'": "bpy.msgbus.publish_rna",
     "TypeError: bpy_struct: item.attr = val: enum \"STR\" not found in ('FLOAT', 'INT', 'VECTOR', 'RGBA', 'STRING')": (
         "bpy.types.NodeClosureOutputItem.socket_type"
@@ -825,7 +825,7 @@ def test_removed_enum_values_are_noted(kb: KnowledgeBase) -> None:
 
 def test_code_that_asks_an_element_for_a_layer_is_told_so(kb: KnowledgeBase) -> None:
     answer = kb.query("bm.faces[0].loops[0].uv")
-    assert answer.hits[0].id == "bmesh.types.BMLayerAccessLoop.uv"
+    assert answer.hits[0].id == "bmesh.types.BMLoopUV.uv"
     assert not any("Closest" in note for note in answer.notes)
 
 
