@@ -9,6 +9,7 @@ import socket
 import threading
 import time
 import zipfile
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -90,6 +91,7 @@ def test_a_source_found_nowhere_else_is_downloaded_with_its_digest(tmp_path: Pat
     assert [path.name for path in guides.path.glob("info_*")] == ["info_overview.html"]
     stored = sorted(path.name for path in (tmp_path / "cache" / "downloads").iterdir())
     assert stored == [
+        ".lock",
         "blender_manual_v510_en.zip",
         "blender_manual_v510_en.zip.sha256",
         "blender_python_reference_5_1.zip",
@@ -104,6 +106,35 @@ def test_downloads_are_not_requested_again(tmp_path: Path, site: Site) -> None:
     site.requests.clear()
     assert look(tmp_path, site.url) == first
     assert site.requests == []
+
+
+def test_a_build_waits_for_the_download_of_another_one_and_takes_it(tmp_path: Path, site: Site) -> None:
+    begun = threading.Event()
+
+    def half_and_the_rest_later(handler: Handler) -> None:
+        del site.faults[MANUAL_PATH]
+        handler.send_response(200)
+        handler.send_header("Content-Length", str(len(MANUAL)))
+        handler.end_headers()
+        handler.wfile.write(MANUAL[:150_000])
+        handler.wfile.flush()
+        begun.set()
+        site.released.wait()
+        handler.wfile.write(MANUAL[150_000:])
+
+    def waits(what: str, done: int, total: int | None) -> None:
+        if what.startswith("waiting"):
+            site.released.set()
+
+    site.faults[MANUAL_PATH] = half_and_the_rest_later
+    with ThreadPoolExecutor() as pool:
+        first = pool.submit(look, tmp_path, site.url)
+        begun.wait()
+        second = pool.submit(look, tmp_path, site.url, progress=waits)
+        second.add_done_callback(lambda _: site.released.set())
+        assert source(first.result()["manual"]).sha256 == hashlib.sha256(MANUAL).hexdigest()
+        assert second.result() == first.result()
+    assert [path for path, _ in site.requests] == [MANUAL_PATH, GUIDES_PATH]
 
 
 def test_a_newer_manual_is_fetched_when_it_is_asked_for(tmp_path: Path, site: Site) -> None:
