@@ -100,8 +100,8 @@ def _verify(
 
     plan = _plan_for(scene, choices["plan"])
     image: Path | None = choices["image"]
-    if image is not None and not image.absolute().parent.is_dir():
-        raise _CannotCheckError(f"The folder {image.absolute().parent} for {image.name} does not exist.")
+    if image is not None:
+        _check_image(image)
     try:
         report, checked, fault = _run(scene, rules, plan, choices)
     except BlenderError as error:
@@ -110,6 +110,14 @@ def _verify(
     if fault:
         click.echo(f"Error: no image could be made: {fault}", err=True)
     return _UNCHECKED if fault else exit_code(report)
+
+
+def _check_image(image: Path) -> None:
+    """Raises _CannotCheckError where an image cannot be put, or would be written over what is none."""
+    if image.suffix.lower() != ".png":
+        raise _CannotCheckError(f"--image {image} is to be a PNG: give it a name that ends in .png.")
+    if not image.absolute().parent.is_dir():
+        raise _CannotCheckError(f"The folder {image.absolute().parent} for {image.name} does not exist.")
 
 
 def _rules(wanted: str | None) -> tuple[Rule, ...]:
@@ -247,11 +255,12 @@ def _opened(scene: Path, choices: dict[str, Any], call: Call) -> Generator[Super
 def _draw(blender: Supervisor, report: Report, call: Call, checked: VerificationScope, target: Path) -> str:
     """Draws the image; returns why that failed, "" if it did not."""
     from agents.blender.sheets.findings_sheet import draw_findings  # noqa: PLC0415
-    from simworlds.sandbox.errors import Refusal  # noqa: PLC0415 - only for --image
+    from simworlds.files import write_whole  # noqa: PLC0415 - only for --image
+    from simworlds.sandbox.errors import BlenderError  # noqa: PLC0415 - likewise
 
     try:
-        target.write_bytes(draw_findings(blender, report, call, checked.title))
-    except Refusal as error:
+        write_whole(target, draw_findings(blender, report, call, checked.title), durable=False)
+    except BlenderError as error:  # what was measured is told all the same
         return str(error)
     except OSError as error:
         return f"{target} cannot be written: {error.strerror or error}."
