@@ -8,7 +8,7 @@ import sys
 import tempfile
 import threading
 import time
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -42,6 +42,11 @@ class _CannotCheckError(Exception):
     def __init__(self, message: str, faults: list[tuple[str, str]] | None = None) -> None:
         self.faults = faults or []
         super().__init__(message)
+
+    @property
+    def lines(self) -> list[str]:
+        """The message, and a line on each fault."""
+        return [str(self), *(f"  {path or 'plan'}: {message}" for path, message in self.faults)]
 
 
 @click.command()
@@ -138,11 +143,25 @@ def _plan_for(scene: Path, given: Path | None) -> ScenePlan | None:
     beside = scene.parent / PLAN_NAME
     if not beside.is_file() or not (scene.parent / NAME).is_file():
         return None
-    with suppress(_CannotCheckError):  # the plan of an edit, say
+    try:
         plan = _plan(beside)
-        click.echo(f"The plan is {beside}, of the run that made the file.", err=True)
-        return plan
-    return None
+    except _CannotCheckError as error:
+        if not _is_of_an_edit(beside):
+            click.echo("\n".join(["Warning: the scene is checked without a plan.", *error.lines]), err=True)
+        return None
+    click.echo(f"The plan is {beside}, of the run that made the file.", err=True)
+    return plan
+
+
+def _is_of_an_edit(path: Path) -> bool:
+    """Whether a file is the plan of an edit, which tells of no scene."""
+    from agents.plan.edit import EditPlan  # noqa: PLC0415 - only beside a run's result
+
+    try:
+        EditPlan.model_validate_json(path.read_bytes())
+    except (OSError, ValueError):
+        return False
+    return True
 
 
 def _plan(path: Path) -> ScenePlan:
@@ -309,13 +328,13 @@ def _print_error(error: _CannotCheckError, form: str | None, logs: list[dict[str
     from agents.protocol.report.json_report import dump_json  # noqa: PLC0415 - not for --help
     from agents.protocol.report.sarif import sarif_failure  # noqa: PLC0415 - not for --help
 
-    lines = [f"Error: {error}", *(f"  {path or 'plan'}: {message}" for path, message in error.faults)]
-    click.echo("\n".join(lines), err=True)
+    text = "\n".join(["Error: " + error.lines[0], *error.lines[1:]])
+    click.echo(text, err=True)
     if form == "json":
         faults = [{"path": path, "message": message} for path, message in error.faults]
         click.echo(dump_json({"error": str(error), "faults": faults}))
     elif form == "sarif":
-        logs.append(sarif_failure("\n".join(lines)))
+        logs.append(sarif_failure(text))
 
 
 class _StatusLine:

@@ -183,8 +183,16 @@ def test_the_plan_of_the_run_that_made_a_file_is_found(session: LiveSession, tmp
     done = verify(tmp_path, *words)
     assert json.loads(done.stdout)["plan"] == PLAN["title"]
     assert "plan.json, of the run that made the file" in done.stderr
-    (tmp_path / "plan.json").write_text('{"title": "An edit plan"}')
-    assert json.loads(verify(tmp_path, *words).stdout)["plan"] == ""
+    task = {"kind": "modify", "stage": "light", "targets": ["Sun"], "instruction": "Dim it."}
+    edit = {"title": "An edit", "tasks": [task], "render": {"kind": "still"}}
+    (tmp_path / "plan.json").write_text(json.dumps(edit))
+    done = verify(tmp_path, *words)
+    assert (json.loads(done.stdout)["plan"], "Warning" in done.stderr) == ("", False)
+    (tmp_path / "plan.json").write_text(json.dumps(PLAN)[:-9])
+    done = verify(tmp_path, *words)
+    assert json.loads(done.stdout)["plan"] == ""
+    assert "Warning: the scene is checked without a plan.\nThe plan " in done.stderr
+    assert "plan: The plan is not valid JSON" in done.stderr
 
 
 @pytest.fixture(scope="module")
