@@ -369,6 +369,15 @@ def test_an_interrupt_keeps_what_has_arrived_for_the_next_run(tmp_path: Path, si
     )
 
 
+def test_a_beginning_is_never_taken_for_that_of_a_newer_file(tmp_path: Path, site: Site) -> None:
+    part = tmp_path / "m.zip.part"
+    part.write_bytes(b"an older file's beginning")
+    (tmp_path / "m.zip.part.json").mkdir()  # as if the process ended there
+    with pytest.raises(SourceError, match="could not be stored"):
+        download(site.url + MANUAL_PATH, tmp_path / "m.zip", patience=DownloadPatience(seconds=60.0))
+    assert part.read_bytes() == b""
+
+
 def test_a_place_that_cannot_be_written_to_is_named(tmp_path: Path, site: Site) -> None:
     (tmp_path / "m.zip.part").mkdir()
     with pytest.raises(SourceError, match="could not be stored"):
