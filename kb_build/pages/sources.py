@@ -184,6 +184,8 @@ class _Search:
             return self._open(role, target, given=False)
         except SourceError as error:
             faults.append(str(error))
+        except OSError as error:
+            faults.append(f"{self.downloads} cannot be written to ({error.strerror or error})")
         return None
 
     def _say_that_it_waits(self) -> None:

@@ -369,6 +369,14 @@ def test_an_interrupt_keeps_what_has_arrived_for_the_next_run(tmp_path: Path, si
     )
 
 
+def test_a_folder_of_downloads_that_cannot_be_written_to_is_named(tmp_path: Path, site: Site) -> None:
+    (tmp_path / "cache").mkdir()
+    (tmp_path / "cache" / "downloads").touch()
+    said = reason(look(tmp_path, site.url)["manual"])
+    assert f"{tmp_path / 'cache' / 'downloads'} cannot be written to (File exists)" in said
+    assert site.requests == []
+
+
 def test_a_beginning_is_never_taken_for_that_of_a_newer_file(tmp_path: Path, site: Site) -> None:
     part = tmp_path / "m.zip.part"
     part.write_bytes(b"an older file's beginning")
