@@ -60,7 +60,11 @@ class _CannotCheckError(Exception):
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
 @click.option("--sarif", "sarif", is_flag=True, help="Print the findings as SARIF 2.1.0.")
 @click.option("--image", type=_PATH, help="Draw the findings on views of the scene, as a PNG.")
-@click.option("--frame", type=int, help="The frame to check. Default: the frame saved in the file.")
+@click.option(
+    "--frame",
+    type=click.IntRange(-1_048_574, 1_048_574),  # Blender's own bounds
+    help="The frame to check. Default: the frame saved in the file.",
+)
 @click.option("--read", type=_PATH, multiple=True, help="A folder that Blender may read, for linked files.")
 @options.VERSION
 @options.EXECUTABLE

@@ -235,6 +235,12 @@ def test_numbered_meshes_that_are_in_no_object_are_one_row(unorganised: Path, tm
     assert "hard ×200" in done.stdout
 
 
+def test_a_frame_that_blender_does_not_have_is_refused(tmp_path: Path) -> None:
+    done = verify(tmp_path, "any.blend", "--frame", "99999999999")
+    assert done.returncode == 2
+    assert "99999999999 is not in the range" in done.stderr
+
+
 @pytest.mark.parametrize(
     ("words", "why"),
     [
