@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from kb_build.base_file import described, read_meta
 from kb_build.errors import StoreError
-from simworlds.how_to_get_bases import how_to_get
+from simworlds.how_to_get_bases import how_to_get, how_to_get_again
 from simworlds.releases import USUAL
 
 if TYPE_CHECKING:
@@ -27,9 +27,15 @@ def base_facts(path: Path) -> dict[str, Any]:
     """All facts of a base's meta, with ``path`` and ``bytes``; ``fault`` where it cannot be read."""
     try:
         meta = described(read_meta(path))
-        return {"path": str(path), "bytes": path.stat().st_size, **meta}
+        facts = {"path": str(path), "bytes": path.stat().st_size, **meta}
+        for _ in base_lines(facts):
+            pass  # all that is told of a base has to be in it
     except (StoreError, OSError) as error:
         return {"path": str(path), "fault": str(error)}
+    except (LookupError, TypeError, ValueError, AttributeError) as error:
+        fault = f"{path}: damaged (its facts: {type(error).__name__}: {error}). {how_to_get_again(path)}"
+        return {"path": str(path), "fault": fault}
+    return facts
 
 
 def base_lines(facts: Mapping[str, Any]) -> Iterator[str]:

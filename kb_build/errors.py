@@ -6,6 +6,7 @@ KBBuildError
 ├── SummaryError     summaries were asked for and could not be had
 ├── StoreError       the knowledge-base file cannot be written or read
 └── ReadyBaseError   a ready base cannot be fetched, or is not what it says
+    └── FetchedElsewhere   another process is downloading a ready base into the same folder
 
 Every message says what was wrong, where, and what to do.
 """

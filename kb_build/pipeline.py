@@ -282,6 +282,17 @@ def _extract(work: _Build) -> Extract:
     except ExtractError:
         file.unlink(missing_ok=True)
         raise
+    except (
+        ValueError,
+        LookupError,
+        TypeError,
+        AttributeError,
+    ) as error:  # no text, or records of another shape
+        file.unlink(missing_ok=True)
+        raise ExtractError(
+            f"{file} is damaged ({type(error).__name__}: {error}) and was removed; run the build again, which asks "
+            "Blender anew"
+        ) from error
     kinds = {symbol.kind for symbol in extract.symbols}
     if not {"class", "operator", "property"} <= kinds:
         reason = extract.faults[0] if extract.faults else "it named no reason"

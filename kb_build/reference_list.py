@@ -58,8 +58,10 @@ def read_reference(path: Path) -> list[str]:
 
 
 def _inventory(data: bytes) -> Iterator[str]:
-    body = data.split(b"\n", 4)[4]
-    for line in zlib.decompress(body).decode().splitlines():
+    head = data.split(b"\n", 4)
+    if len(head) < 5:
+        raise ValueError("the inventory is cut off")
+    for line in zlib.decompress(head[4]).decode().splitlines():
         entry = _ENTRY.fullmatch(line.rstrip())
         if entry and entry["domain"] == "py":
             yield entry["name"]

@@ -13,6 +13,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from kb_build.base_file import open_base, read_meta
+from kb_build.errors import StoreError
 from kb_build.index.analysis import key
 from kb_build.live.values import compare_values, runtime_at_hand
 from kb_build.reference_list import WANTED, ReferenceResolution, read_reference, resolve
@@ -119,7 +120,10 @@ def verify_base(path: Path, reference: Path | None = None, *, live: bool = False
     with closing(open_base(path)) as connection:
         checks.append(_guarded("file", _file, connection))
         if not checks[0].faults:
-            base = _Base(connection, meta)
+            try:
+                base = _Base(connection, meta)
+            except sqlite3.Error as error:
+                raise StoreError(f"{path}: damaged ({error}). {how_to_get_again(path)}") from error
             checks += [_guarded(name, check, base) for name, check in _CHECKS]
             if live and not any(check.faults for check in checks):
                 checks.append(_guarded("new values", lambda _: _new_values(path, meta), base))

@@ -1,4 +1,7 @@
-"""Processes that end with the one that started them. ``python -I -S ending.py PARENT COMMAND …`` becomes it."""
+"""Processes that end with the one that started them.
+
+``python -I -S end_with_parent.py PARENT COMMAND …`` becomes such a process.
+"""
 
 from __future__ import annotations
 

@@ -62,6 +62,7 @@ class FolderFiles:
     folder: Path
     files: list[FolderFile] = field(default_factory=list)
     links: int = 0
+    misnamed: int = 0
     special: int = 0
     too_large: int = 0
     too_deep: int = 0
@@ -82,6 +83,7 @@ class FolderFiles:
         """What was passed over, as ``"3 links, 1 file over the limit"``; empty when nothing was."""
         counts = (
             (self.links, "link", "links"),
+            (self.misnamed, "name that is not UTF-8", "names that are not UTF-8"),
             (
                 self.special,
                 "entry that is neither file nor folder",
@@ -108,6 +110,15 @@ def list_files(folder: Path, wanted: Wanted, limits: FolderLimits | None = None)
     return walk.found
 
 
+def _is_text(name: str) -> bool:
+    """Whether a name can be written as text: other bytes than UTF-8 stand in it as lone surrogates."""
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
 @dataclass(slots=True)
 class _Walk:
     found: FolderFiles
@@ -125,7 +136,9 @@ class _Walk:
                     raise self._too_large(f"{self.limits.entries:,} entries")
                 if entry.name.startswith("."):
                     continue
-                if entry.is_symlink():
+                if not _is_text(entry.name):
+                    self.found.misnamed += 1
+                elif entry.is_symlink():
                     self.found.links += 1
                 elif entry.is_dir(follow_symlinks=False):
                     self._enter(folder, path / entry.name, depth + 1)

@@ -73,12 +73,17 @@ license = ["SPDX:GPL-3.0-or-later"]
 network = "Listens on this machine alone, once you have started it"
 files = "Writes copies of the scene for SimWorlds, and where it listens"
 """
-_CLASSIC = """\
+_CLASSIC = f"""\
 import sys, bpy
 bpy.ops.preferences.addon_install(filepath=sys.argv[-1], overwrite=True)
-bpy.ops.preferences.addon_enable(module={name!r})
+bpy.ops.preferences.addon_enable(module={NAME!r})
 bpy.ops.wm.save_userpref()
-print("SimWorlds", "is enabled" if {name!r} in bpy.context.preferences.addons else "could not be enabled")
+"""
+# The words are parted, so that a Blender that shows the code it was given does not say them.
+_CHECK = f"""\
+import addon_utils, bpy
+names = [name for name in bpy.context.preferences.addons.keys() if name.rpartition(".")[2] == {NAME!r}]
+print("SimWorlds", "is enabled" if any(addon_utils.check(name)[1] for name in names) else "is not enabled")
 """
 
 
@@ -129,30 +134,24 @@ def install(archive: Path, blender: Path) -> str:
     version = _version_of(blender)
     if version >= _FIRST_WITH_EXTENSIONS:
         words = ["--command", "extension", "install-file", "-r", "user_default", "-e", str(archive)]
-        said = _said([str(blender), *words])
-        done = "error" not in said.lower()
     else:
-        code = _CLASSIC.format(name=NAME)
-        said = _said(
-            [
-                str(blender),
-                "--background",
-                "--python-exit-code",
-                "1",
-                "--python-expr",
-                code,
-                "--",
-                str(archive),
-            ]
-        )
-        done = _DONE in said
-    if not done:
-        raise CannotInstall(f"{blender} did not install the extension:\n{said[-2000:].strip()}")
-    return ".".join(map(str, version))
+        words = [*_in_background(_CLASSIC), "--", str(archive)]
+    ended, said = _run([str(blender), *words])
+    if ended == 0:
+        _, found = _run([str(blender), *_in_background(_CHECK)])
+        if _DONE in found:
+            return ".".join(map(str, version))
+        said += found
+    how = said[-2000:].strip() or f"It said nothing, and ended with the exit code {ended}."
+    raise CannotInstall(f"{blender} did not install the extension:\n{how}")
+
+
+def _in_background(code: str) -> list[str]:
+    return ["--background", "--python-exit-code", "1", "--python-expr", code]
 
 
 def _version_of(blender: Path) -> tuple[int, int]:
-    said = _said([str(blender), "--version"])
+    _, said = _run([str(blender), "--version"])
     match = re.search(r"Blender (\d+)\.(\d+)", said)
     if match is None:
         raise CannotInstall(
@@ -165,7 +164,8 @@ def _version_of(blender: Path) -> tuple[int, int]:
     return version
 
 
-def _said(command: list[str]) -> str:
+def _run(command: list[str]) -> tuple[int, str]:
+    """The exit code of a command, and what it said."""
     try:
         done = subprocess.run(
             command,
@@ -180,4 +180,4 @@ def _said(command: list[str]) -> str:
         raise CannotInstall(f"{command[0]} did not end within {_INSTALL_SECONDS:g} s.") from error
     except OSError as error:
         raise CannotInstall(f"{command[0]} cannot be started: {error.strerror or error}.") from error
-    return done.stdout + done.stderr
+    return done.returncode, done.stdout + done.stderr

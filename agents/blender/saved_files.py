@@ -139,19 +139,40 @@ def copy_from_workspace(
 
 def put_in_place(staged: Path, target: Path) -> None:
     """Moves a .blend and its caches to their place; on failure the old ones stay. Raises Refusal."""
-    before = staged.with_name("before")
+    before, has_moved = staged.with_name("before"), False
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         if caches_folder(target).exists():
             caches_folder(target).rename(before)
         if caches_folder(staged).exists():
             caches_folder(staged).rename(caches_folder(target))
+            has_moved = True
         staged.replace(target)
     except OSError as error:
-        if before.exists():
+        if has_moved:
             shutil.rmtree(caches_folder(target), ignore_errors=True)
+        if before.exists():
             before.rename(caches_folder(target))
         raise Refusal(f"{target} cannot be written: {error.strerror or error}.") from error
+
+
+def move_saved(made: Path, target: Path) -> None:
+    """Moves a saved .blend with its caches; where the file is, all is. May be called again after it was cut off.
+
+    The caches of the file that was there before go, whether or not the new one has any. Raises OSError.
+    """
+    target.parent.mkdir(exist_ok=True)
+    begun = made.with_name(
+        f"{made.name}.begun"
+    )  # where this is, the caches beside the target may be the new ones
+    if caches_folder(made).is_dir():
+        begun.touch()
+        shutil.rmtree(caches_folder(target), ignore_errors=True)
+        caches_folder(made).replace(caches_folder(target))
+    elif not begun.exists():
+        shutil.rmtree(caches_folder(target), ignore_errors=True)
+    made.replace(target)
+    begun.unlink(missing_ok=True)
 
 
 def open_elsewhere(launch: Launch, blend: Path, *, timeout: float) -> FileContents:

@@ -150,8 +150,9 @@ def make_server(
             )
         if params.name in docs_client.NAMES:
             return await _look_up(docs, params.name, params.arguments)
-        if team is not None and (answer := team.use(params.name, params.arguments or {})) is not None:
-            return answer
+        if team is not None and params.name in team.names:
+            # A large plan takes seconds, in which other clients are not to wait.
+            return await anyio.to_thread.run_sync(team.use, params.name, params.arguments or {})
         tool = served.named(params.name)
         if tool is None:
             raise MCPError(types.INVALID_PARAMS, _not_offered(params.name, names, profile))

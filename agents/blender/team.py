@@ -132,12 +132,13 @@ PROMPTS: tuple[Prompt, ...] = (
     Prompt("review", "Review a stage", "Reviews one stage of the open scene.", (_STAGE,), _review),
 )
 _BY_NAME = {prompt.name: prompt for prompt in PROMPTS}
+_TOOLS = {plan_check.NAME: plan_check.answer}
 
 
 class Team:
     """What a server offers besides Blender's tools: the plan check and the prompts."""
 
-    names = (plan_check.NAME,)
+    names = tuple(_TOOLS)
 
     def tools(self) -> list[types.Tool]:
         """The entries of the tools."""
@@ -155,9 +156,9 @@ class Team:
         """The entries of the prompts."""
         return [prompt.entry for prompt in PROMPTS]
 
-    def use(self, name: str, arguments: Mapping[str, Any]) -> types.CallToolResult | None:
-        """The reply of the tool of that name; None if it is not one of these."""
-        return plan_check.answer(arguments) if name == plan_check.NAME else None
+    def use(self, name: str, arguments: Mapping[str, Any]) -> types.CallToolResult:
+        """The reply of the tool of that name, one of ``names``."""
+        return _TOOLS[name](arguments)
 
     def prompt(self, name: str, arguments: Mapping[str, str]) -> types.GetPromptResult:
         """The text of a prompt. Raises MCPError, which names the valid choices."""

@@ -357,7 +357,9 @@ def _knowledge(asked: str | None, runtime: Runtime | None) -> DoctorResult:
         bases: list[dict[str, Any]] = json.loads(done.stdout)
     except (OSError, ValueError, subprocess.TimeoutExpired) as error:
         return DoctorResult("Knowledge", "poor", f"the list of bases cannot be read: {error}")
-    minors = {".".join(str(base.get("blender", "")).split(".")[:2]): base for base in bases}
+    readable = [base for base in bases if "fault" not in base]
+    damaged = ", ".join(str(base.get("path", "")) for base in bases if "fault" in base)
+    minors = {".".join(str(base.get("blender", "")).split(".")[:2]): base for base in readable}
     # Where no Blender was found and none is asked for, answers come from the newest base.
     version = runtime.version if runtime else asked or ""
     minor = ".".join(version.split(".")[:2]) or max(minors, key=version_key, default="")
@@ -366,7 +368,8 @@ def _knowledge(asked: str | None, runtime: Runtime | None) -> DoctorResult:
         text = f"for Blender {base['blender']}, {base.get('bytes', 0) / 1e6:,.0f} MB"
         return DoctorResult("Knowledge", "good", text, place=str(base.get("path", "")), data=data)
     have = f", only for {', '.join(sorted(minors, key=version_key))}" if minors else ""
-    text = f"no base{f' for Blender {minor}' if minor else ''}{have}"
+    lost = f"; not readable: {damaged}" if damaged else ""
+    text = f"no base{f' for Blender {minor}' if minor else ''}{have}{lost}"
     return DoctorResult("Knowledge", "poor", text, advice=_how_to_build(minor or USUAL, runtime), data=data)
 
 

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from simworlds.operating_system import SYSTEM
+from simworlds.own_command import own_command
 from simworlds.terminal.finite_range import FiniteRange
 
 if TYPE_CHECKING:
@@ -223,7 +225,6 @@ def runs() -> None:
 def show(run: Path, *, report: bool) -> None:
     """Show the state or the outcome of a run."""
     from agents.loop.errors import RunError  # noqa: PLC0415
-    from agents.views.report.page import write_report  # noqa: PLC0415
     from agents.views.run_list import shown  # noqa: PLC0415
     from simworlds.terminal.console import Console  # noqa: PLC0415 - not for --help
     from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
@@ -233,10 +234,27 @@ def show(run: Path, *, report: bool) -> None:
         if report:
             with shown_progress(in_logs=False) as progress:
                 progress("Writing the report", 0, None)
-                path = write_report(run)
+                path = _write_report(run)
+            if path is None:
+                sys.exit(EXITS["failed"])
             click.echo(path)
     except RunError as error:
         raise click.UsageError(str(error)) from error
+
+
+def _write_report(run: Path) -> Path | None:
+    """Writes the report of a run; where it cannot be written, says why. Raises NoRun."""
+    from agents.views.report.page import NAME, write_report  # noqa: PLC0415 - not for --help
+
+    try:
+        return write_report(run)
+    except OSError as error:
+        click.echo(
+            f"Error: {run / NAME} cannot be written: {error.strerror or error}. Make room there, then write it again: "
+            f"{own_command()} show {SYSTEM.quoted(str(run))} --report",
+            err=True,
+        )
+        return None
 
 
 def _of_model(given: dict[str, Any]) -> dict[str, Any]:
@@ -292,7 +310,6 @@ def _work(
     from agents.loop.session import RunSession, Stop, resume_command  # noqa: PLC0415
     from agents.views.live_view import RunView, make_view  # noqa: PLC0415
     from agents.views.report.early import ReportWriter  # noqa: PLC0415
-    from agents.views.report.page import write_report  # noqa: PLC0415
 
     stop = Stop(threading.Event())
     try:
@@ -301,7 +318,7 @@ def _work(
         with watched as view, _signals(stop):
             watcher = ReportWriter(view, root)
             ended = work(RunSession(_limited(given, render=render), watcher, stop))
-        report = write_report(root)
+        report = _write_report(root)
     except RunError as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(EXITS["failed"])

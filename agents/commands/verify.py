@@ -8,7 +8,7 @@ import sys
 import tempfile
 import threading
 import time
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -43,6 +43,11 @@ class _CannotCheckError(Exception):
         self.faults = faults or []
         super().__init__(message)
 
+    @property
+    def lines(self) -> list[str]:
+        """The message, and a line on each fault."""
+        return [str(self), *(f"  {path or 'plan'}: {message}" for path, message in self.faults)]
+
 
 @click.command()
 @click.argument("scenes", metavar="SCENE...", nargs=-1, required=True, type=_PATH)
@@ -55,7 +60,11 @@ class _CannotCheckError(Exception):
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
 @click.option("--sarif", "sarif", is_flag=True, help="Print the findings as SARIF 2.1.0.")
 @click.option("--image", type=_PATH, help="Draw the findings on views of the scene, as a PNG.")
-@click.option("--frame", type=int, help="The frame to check. Default: the frame saved in the file.")
+@click.option(
+    "--frame",
+    type=click.IntRange(-1_048_574, 1_048_574),  # Blender's own bounds
+    help="The frame to check. Default: the frame saved in the file.",
+)
 @click.option("--read", type=_PATH, multiple=True, help="A folder that Blender may read, for linked files.")
 @options.VERSION
 @options.EXECUTABLE
@@ -100,8 +109,8 @@ def _verify(
 
     plan = _plan_for(scene, choices["plan"])
     image: Path | None = choices["image"]
-    if image is not None and not image.absolute().parent.is_dir():
-        raise _CannotCheckError(f"The folder {image.absolute().parent} for {image.name} does not exist.")
+    if image is not None:
+        _check_image(image)
     try:
         report, checked, fault = _run(scene, rules, plan, choices)
     except BlenderError as error:
@@ -110,6 +119,14 @@ def _verify(
     if fault:
         click.echo(f"Error: no image could be made: {fault}", err=True)
     return _UNCHECKED if fault else exit_code(report)
+
+
+def _check_image(image: Path) -> None:
+    """Raises _CannotCheckError where an image cannot be put, or would be written over what is none."""
+    if image.suffix.lower() != ".png":
+        raise _CannotCheckError(f"--image {image} is to be a PNG: give it a name that ends in .png.")
+    if not image.absolute().parent.is_dir():
+        raise _CannotCheckError(f"The folder {image.absolute().parent} for {image.name} does not exist.")
 
 
 def _rules(wanted: str | None) -> tuple[Rule, ...]:
@@ -130,11 +147,25 @@ def _plan_for(scene: Path, given: Path | None) -> ScenePlan | None:
     beside = scene.parent / PLAN_NAME
     if not beside.is_file() or not (scene.parent / NAME).is_file():
         return None
-    with suppress(_CannotCheckError):  # the plan of an edit, say
+    try:
         plan = _plan(beside)
-        click.echo(f"The plan is {beside}, of the run that made the file.", err=True)
-        return plan
-    return None
+    except _CannotCheckError as error:
+        if not _is_of_an_edit(beside):
+            click.echo("\n".join(["Warning: the scene is checked without a plan.", *error.lines]), err=True)
+        return None
+    click.echo(f"The plan is {beside}, of the run that made the file.", err=True)
+    return plan
+
+
+def _is_of_an_edit(path: Path) -> bool:
+    """Whether a file is the plan of an edit, which tells of no scene."""
+    from agents.plan.edit import EditPlan  # noqa: PLC0415 - only beside a run's result
+
+    try:
+        EditPlan.model_validate_json(path.read_bytes())
+    except (OSError, ValueError):
+        return False
+    return True
 
 
 def _plan(path: Path) -> ScenePlan:
@@ -247,11 +278,12 @@ def _opened(scene: Path, choices: dict[str, Any], call: Call) -> Generator[Super
 def _draw(blender: Supervisor, report: Report, call: Call, checked: VerificationScope, target: Path) -> str:
     """Draws the image; returns why that failed, "" if it did not."""
     from agents.blender.sheets.findings_sheet import draw_findings  # noqa: PLC0415
-    from simworlds.sandbox.errors import Refusal  # noqa: PLC0415 - only for --image
+    from simworlds.files import write_whole  # noqa: PLC0415 - only for --image
+    from simworlds.sandbox.errors import BlenderError  # noqa: PLC0415 - likewise
 
     try:
-        target.write_bytes(draw_findings(blender, report, call, checked.title))
-    except Refusal as error:
+        write_whole(target, draw_findings(blender, report, call, checked.title), durable=False)
+    except BlenderError as error:  # what was measured is told all the same
         return str(error)
     except OSError as error:
         return f"{target} cannot be written: {error.strerror or error}."
@@ -300,13 +332,13 @@ def _print_error(error: _CannotCheckError, form: str | None, logs: list[dict[str
     from agents.protocol.report.json_report import dump_json  # noqa: PLC0415 - not for --help
     from agents.protocol.report.sarif import sarif_failure  # noqa: PLC0415 - not for --help
 
-    lines = [f"Error: {error}", *(f"  {path or 'plan'}: {message}" for path, message in error.faults)]
-    click.echo("\n".join(lines), err=True)
+    text = "\n".join(["Error: " + error.lines[0], *error.lines[1:]])
+    click.echo(text, err=True)
     if form == "json":
         faults = [{"path": path, "message": message} for path, message in error.faults]
         click.echo(dump_json({"error": str(error), "faults": faults}))
     elif form == "sarif":
-        logs.append(sarif_failure("\n".join(lines)))
+        logs.append(sarif_failure(text))
 
 
 class _StatusLine:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import shutil
 import threading
 import time
 from collections import Counter
@@ -18,7 +17,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from agents.blender.formatting import format_list
-from agents.blender.saved_files import caches_folder
+from agents.blender.saved_files import move_saved
 from agents.blender.tools.scene_order import words_of
 from agents.loop.acceptance import AcceptanceRecord
 from agents.loop.edit.baseline import told_since
@@ -351,7 +350,7 @@ class Run:
             self._unused.setdefault(unused, name != START)
         if made.is_file() and (is_replaced or not target.exists()):
             try:
-                _move(made, target)
+                move_saved(made, target)
             except OSError as error:
                 raise NotSaved(f"{target} cannot be written: {error.strerror or error}.") from error
         if not target.is_file() or "path" not in outcome.data:  # an earlier scene may stand there
@@ -448,15 +447,6 @@ class RoleTools:
             if withdrawn or task.known:
                 return ToolResult(call.id, (Text(text), *(outcome.pictures if findings else ())))
         return ToolResult(call.id, outcome.content, outcome.failed)
-
-
-def _move(made: Path, target: Path) -> None:
-    """Moves a saved file with its caches; where the file is, all is. May be called again after it was cut off."""
-    target.parent.mkdir(exist_ok=True)
-    if caches_folder(made).is_dir():
-        shutil.rmtree(caches_folder(target), ignore_errors=True)
-        caches_folder(made).replace(caches_folder(target))
-    made.replace(target)
 
 
 def _call(name: str, asked: Mapping[str, Any]) -> str:

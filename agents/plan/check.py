@@ -7,29 +7,31 @@ unknown names, relations that contradict each other, impossible sizes, phases ou
 from __future__ import annotations
 
 import json
-from itertools import combinations
+from itertools import chain, islice
 from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
-from agents.plan.faults import Fault
+from agents.plan.faults import MOST_FAULTS, Fault
 from agents.plan.graph import held_by, reachable, relation_faults
 from agents.plan.part import ALWAYS, owner_of
 from agents.plan.relations import Distributed, EmbeddedIn, Inside, SupportedBy
 from agents.plan.scene import PlannedObject, ScenePlan
-from agents.plan.validation_messages import faults_from, near
+from agents.plan.validation_messages import faults_from, format_path, near
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from agents.plan.motion import MotionPhase
 
 MAX_CHARACTERS = 2_000_000
+_MOST_ENTRIES = 1000  # of one list
+_DEEPEST = 6  # steps; all lists of a plan lie above
 _MOVED = frozenset({"rigid", "cloth", "soft", "fluid", "emitter", "rig", "keyframed"})
 
 
 def read_plan(text: str | bytes | dict[str, Any]) -> tuple[ScenePlan | None, list[Fault]]:
-    """Reads a plan from JSON: (plan, []) if it is valid and consistent, else (None, faults)."""
+    """Reads a plan from JSON: (plan, []) if it is valid and consistent, else (None, faults), of many the first."""
     if isinstance(text, (str, bytes)):
         if len(text) > MAX_CHARACTERS:
             return None, [Fault("", f"The plan has {len(text)} characters; the limit is {MAX_CHARACTERS}.")]
@@ -37,6 +39,8 @@ def read_plan(text: str | bytes | dict[str, Any]) -> tuple[ScenePlan | None, lis
             text = json.loads(text)
         except (ValueError, RecursionError) as error:
             return None, [Fault("", f"The plan is not valid JSON: {error}.")]
+    if long := list(islice(_long_lists(text), MOST_FAULTS)):
+        return None, long
     try:
         plan = ScenePlan.model_validate(text)
     except ValidationError as error:
@@ -46,19 +50,31 @@ def read_plan(text: str | bytes | dict[str, Any]) -> tuple[ScenePlan | None, lis
 
 
 def faults_of(plan: ScenePlan) -> list[Fault]:
-    """The contradictions in a plan; [] if it is consistent."""
-    return [
-        *_repeated_names(plan),
-        *_system_faults(plan),
-        *_unknown_names(plan),
-        *relation_faults(plan.relations),
-        *_ungrounded(plan),
-        *_impossible_sizes(plan),
-        *_pattern_faults(plan),
-        *_phase_faults(plan),
-        *_stage_faults(plan),
-        *_mechanism_faults(plan),
-    ]
+    """The contradictions in a plan, of many the first; [] if it is consistent."""
+    faults = chain(
+        _repeated_names(plan),
+        _system_faults(plan),
+        _unknown_names(plan),
+        relation_faults(plan.relations),
+        _ungrounded(plan),
+        _impossible_sizes(plan),
+        _pattern_faults(plan),
+        _phase_faults(plan),
+        _stage_faults(plan),
+        _mechanism_faults(plan),
+    )
+    return list(islice(faults, MOST_FAULTS))
+
+
+def _long_lists(data: Any) -> Iterator[Fault]:
+    """Lists that are longer than any plan's: what is compared in pairs is to stay a matter of seconds."""
+    left: list[tuple[tuple[int | str, ...], Any]] = [((), data)]
+    for path, value in left:
+        if isinstance(value, list) and len(value) > _MOST_ENTRIES:
+            yield Fault(format_path(path), f"It has {len(value)} entries; the limit is {_MOST_ENTRIES}.")
+        elif isinstance(value, (dict, list)) and len(path) < _DEEPEST:
+            entries = value.items() if isinstance(value, dict) else enumerate(value)
+            left += [((*path, name), entry) for name, entry in entries]
 
 
 def _repeated_names(plan: ScenePlan) -> Iterator[Fault]:
@@ -137,15 +153,14 @@ def _unknown_names(plan: ScenePlan) -> Iterator[Fault]:
 
 def _ungrounded(plan: ScenePlan) -> Iterator[Fault]:
     """A supported object must stand, directly or through others, on an object of the ground."""
-    ground = {planned.name for planned in plan.objects if "ground" in planned.systems}
-    holders: dict[str, set[str]] = {}
+    ground = [planned.name for planned in plan.objects if "ground" in planned.systems]
+    held_on: dict[str, set[str]] = {}
     for relation in plan.relations:
         for held, holder in held_by(relation):
-            holders.setdefault(owner_of(held), set()).add(owner_of(holder))
+            held_on.setdefault(owner_of(holder), set()).add(owner_of(held))
+    grounded = reachable(ground, lambda name: held_on.get(name, ()))
     for place, relation in enumerate(plan.relations):
-        if not isinstance(relation, SupportedBy):
-            continue
-        if not ground & reachable([owner_of(relation.child)], lambda name: holders.get(name, ())).keys():
+        if isinstance(relation, SupportedBy) and owner_of(relation.child) not in grounded:
             yield Fault(
                 f"relations[{place}]",
                 f"{relation.child!r} is supported, but nothing below it leads to an object of the system 'ground'; "
@@ -222,12 +237,23 @@ def _phase_faults(plan: ScenePlan) -> Iterator[Fault]:
                 f"{phase.actor!r} moves, but its role {roles[phase.actor]!r} does not; choose one of "
                 f"{', '.join(sorted(_MOVED))}.",
             )
-    for (first, phase), (second, other) in combinations(enumerate(plan.motion.phases), 2):
-        if phase.actor == other.actor and phase.start < other.end and other.start < phase.end:
+    yield from _overlaps(plan.motion.phases)
+
+
+def _overlaps(phases: Sequence[MotionPhase]) -> Iterator[Fault]:
+    """Phases of one actor at one time: each is told with the one before it that lasts the longest."""
+    longest: dict[str, int] = {}
+    for place in sorted(range(len(phases)), key=lambda place: (phases[place].start, phases[place].end)):
+        phase, before = phases[place], longest.get(phases[place].actor)
+        if before is not None and phases[before].start < phase.end and phase.start < phases[before].end:
+            first, second = sorted((before, place))
             yield Fault(
                 f"motion.phases[{second}]",
-                f"{other.name!r} overlaps {phase.name!r} (phases[{first}]) of the same actor {phase.actor!r}.",
+                f"{phases[second].name!r} overlaps {phases[first].name!r} (phases[{first}]) of the same actor "
+                f"{phase.actor!r}.",
             )
+        if before is None or phase.end > phases[before].end:
+            longest[phase.actor] = place
 
 
 def _cause_faults(path: str, phase: MotionPhase, by_name: dict[str, MotionPhase]) -> Iterator[Fault]:

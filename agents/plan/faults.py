@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+MOST_FAULTS = 200  # that are looked for: whoever mends these asks again
+
 
 @dataclass(frozen=True, slots=True)
 class Fault:

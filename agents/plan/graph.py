@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from typing import TYPE_CHECKING
 
 from agents.plan.faults import Fault
@@ -51,9 +51,8 @@ def relation_faults(relations: Sequence[Relation]) -> Iterator[Fault]:
 
 def _self_relations(relations: Sequence[Relation]) -> Iterator[Fault]:
     for place, relation in enumerate(relations):
-        nodes = relation.nodes
-        for node in dict.fromkeys(nodes):
-            if nodes.count(node) > 1:
+        for node, times in Counter(relation.nodes).items():
+            if times > 1:
                 yield Fault(
                     f"relations[{place}]", f"{relation.kind} names {node!r} twice; name each object once."
                 )
@@ -74,29 +73,54 @@ def _duplicates(relations: Sequence[Relation]) -> Iterator[Fault]:
 def _cycles(relations: Sequence[Relation]) -> Iterator[Fault]:
     """A on B and B on A, directly or through others: nothing can hold itself."""
     held: dict[str, set[str]] = defaultdict(set)
+    tower = _Tower()
     for place, relation in enumerate(relations):
         if not isinstance(relation, (SupportedBy, OnTopOf, Inside)):
             continue
-        for child, parent in held_by(relation):
-            chain = _path(held, owner_of(parent), owner_of(child))
-            if owner_of(child) != owner_of(parent) and chain:
-                words = " on ".join(repr(name) for name in (owner_of(child), *chain))
+        for held_node, holder_node in held_by(relation):
+            child, parent = owner_of(held_node), owner_of(holder_node)
+            if child != parent and tower.has(parent, child):
+                words = " on ".join(repr(name) for name in (child, *_path(held, parent, child)))
                 yield Fault(f"relations[{place}]", f"{relation.kind} closes a cycle: {words}.")
-            held[owner_of(child)].add(owner_of(parent))
+            held[child].add(parent)
+            tower.add(child, parent)
+
+
+class _Tower:
+    """Which objects are below which, over any number of steps, without a walk down the tower for each relation."""
+
+    def __init__(self) -> None:
+        self._below: defaultdict[str, set[str]] = defaultdict(set)
+        self._above: defaultdict[str, set[str]] = defaultdict(set)
+
+    def has(self, upper: str, lower: str) -> bool:
+        """Whether ``lower`` is below ``upper``."""
+        return lower in self._below[upper]
+
+    def add(self, upper: str, lower: str) -> None:
+        """``upper`` stands on ``lower``: all that is above the one is above all that is below the other."""
+        if self.has(upper, lower):
+            return
+        uppers, lowers = {upper, *self._above[upper]}, {lower, *self._below[lower]}
+        for name in uppers:
+            self._below[name] |= lowers
+        for name in lowers:
+            self._above[name] |= uppers
 
 
 def _path(held: dict[str, set[str]], start: str, goal: str) -> list[str]:
-    """The objects from ``start`` down to ``goal``; [] if there is no path."""
-    stack, seen = [[start]], {start}
-    while stack:
-        path = stack.pop()
-        if path[-1] == goal:
-            return path
-        for below in sorted(held.get(path[-1], ())):
-            if below not in seen:
-                seen.add(below)
-                stack.append([*path, below])
-    return []
+    """The objects from ``start`` down to ``goal``, which is below it."""
+    stack, above = [start], {start: ""}
+    while stack[-1] != goal:
+        name = stack.pop()
+        for below in sorted(held.get(name, ())):
+            if below not in above:
+                above[below] = name
+                stack.append(below)
+    path = [goal]
+    while path[-1] != start:
+        path.append(above[path[-1]])
+    return path[::-1]
 
 
 def _opposed_directions(relations: Sequence[Relation]) -> Iterator[Fault]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any, cast
 
-from agents.plan.faults import Fault
+from agents.plan.faults import MOST_FAULTS, Fault
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -27,11 +27,11 @@ _NAME_RULE = "A name has 1 to 60 characters and no slash; write a part of an obj
 
 
 def faults_from(error: ValidationError, data: Any, model: type[BaseModel]) -> list[Fault]:
-    """One fault for each error that pydantic found when it validated ``data`` as ``model``."""
+    """One fault for each error that pydantic found when it validated ``data`` as ``model``, of many the first."""
     schema = model.model_json_schema()
     faults: dict[Fault, None] = {}
     choices: dict[str, list[str]] = {}
-    for details in error.errors(include_url=False, include_context=False):
+    for details in error.errors(include_url=False, include_context=False)[:MOST_FAULTS]:
         path, branch = _locate(details, data)
         if branch is None:
             faults[_fault(path, details, schema)] = None

@@ -207,10 +207,10 @@ class _Transfer:
         total = offset + int(length) if length.isdigit() else None
         if (total or 0) > self.largest:
             raise ValueError(f"it would be {total:,} bytes, more than such a file has")
-        if not offset:
-            note = {"url": self.url, "validator": _validator(response)}
-            _validator_file(self.part).write_text(json.dumps(note), encoding="utf-8")
         with self.part.open("ab" if offset else "wb") as file:
+            if not offset:  # of another file nothing may be left once this one's validator is noted
+                note = {"url": self.url, "validator": _validator(response)}
+                _validator_file(self.part).write_text(json.dumps(note), encoding="utf-8")
             for chunk in response.iter_raw(_CHUNK):
                 with self.writing:
                     if self.stopped:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import json
 import zlib
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from kb_build.errors import SourceError
@@ -73,10 +74,11 @@ def _keep(pages: list[Page], path: Path) -> None:
         ):
             for page in pages:
                 file.write(json.dumps(to_json(page), ensure_ascii=False) + "\n")
-        for old in sorted(path.parent.glob("*.jsonl.gz"), key=lambda one: one.stat().st_mtime)[:-_KEPT]:
-            old.unlink(missing_ok=True)
     except OSError as error:
         raise SourceError(
             f"the pages of {path.name} cannot be kept in {path.parent}: {error}; make room there, or set "
             "SIMWORLDS_HOME"
         ) from error
+    with suppress(OSError):  # another build may be removing them, too
+        for old in sorted(path.parent.glob("*.jsonl.gz"), key=lambda one: one.stat().st_mtime)[:-_KEPT]:
+            old.unlink(missing_ok=True)

@@ -13,6 +13,7 @@ from kb_build.errors import SourceError
 from kb_build.pages.archives import unpack
 from kb_build.pages.download import DownloadPatience, download
 from simworlds.folder_files import FolderFiles, FolderLimits, FolderTooLarge, list_files, read_file
+from simworlds.folder_lock import locked
 from simworlds.releases import ROLES, Role, address, archive_suffixes, minor_of, source_names
 
 if TYPE_CHECKING:
@@ -84,8 +85,8 @@ def find_sources(  # noqa: PLR0913 - each names one place to look in
     ``corpora`` is a folder with sources of several versions; ``before`` tells by role where the last build had
     them from; ``cache`` keeps downloads, unpacked archives and digests; with ``fresh``, what was downloaded is
     downloaded again, and counts where that fails; ``base_url`` replaces the official site; silent addresses cost
-    what ``patience`` allows (ten seconds), both roles together. Raises SourceError when a path that the user named
-    cannot be used.
+    what ``patience`` allows (ten seconds), both roles together. What another process is downloading into ``cache`` is
+    waited for. Raises SourceError when a path that the user named cannot be used.
     """
     waits = patience or DownloadPatience()
     search = _Search(
@@ -175,11 +176,21 @@ class _Search:
         url = address(role, self.version, self.base_url)
         target = self.downloads / f"{source_names(role, self.version)[-1]}.zip"
         try:
-            download(url, target, patience=self.patience, progress=self.progress)
+            self.downloads.mkdir(parents=True, exist_ok=True)
+            with locked(self.downloads, before_waiting=self._say_that_it_waits):
+                if not self.fresh and (source := self._among_downloads(role, [])):
+                    return source  # another process has downloaded it meanwhile
+                download(url, target, patience=self.patience, progress=self.progress)
             return self._open(role, target, given=False)
         except SourceError as error:
             faults.append(str(error))
+        except OSError as error:
+            faults.append(f"{self.downloads} cannot be written to ({error.strerror or error})")
         return None
+
+    def _say_that_it_waits(self) -> None:
+        if self.progress:
+            self.progress("waiting for another SimWorlds to end its download", 0, None)
 
     def _open(self, role: Role, path: Path, *, given: bool) -> DocumentationSource:
         """The source at ``path``. Raises SourceError if it has no pages of this role, or another version."""

@@ -17,6 +17,7 @@ from kb_build.errors import StoreError
 from kb_build.ready.manifest import BASE, LICENCES, MANIFEST, NOTICE, SUFFIX, Manifest, notice
 from kb_build.schema import SCHEMA_VERSION
 from simworlds.files import scratch_folder, sha256_of_file, staged_file
+from simworlds.how_to_get_bases import how_to_get_again
 from simworlds.terminal.progress import Progress, silent
 
 if TYPE_CHECKING:
@@ -54,6 +55,9 @@ def export_base(base: Path, output: Path, *, progress: Progress = silent) -> Exp
         raise StoreError(
             f"{output} cannot be written: {error}. Make room, or name another file with --output"
         ) from error
+    except (LookupError, TypeError, ValueError, AttributeError) as error:
+        fault = f"its facts: {type(error).__name__}: {' '.join(str(error).split())[:200]}"
+        raise StoreError(f"{base}: damaged ({fault}). {how_to_get_again(base)}") from error
     return Exported(output, size, digest, manifest)
 
 

@@ -13,7 +13,7 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
-from urllib.parse import urldefrag, urlsplit
+from urllib.parse import urlsplit
 
 from kb_build.base_file import refuse_folder
 from kb_build.errors import FetchedElsewhere, KBBuildError, ReadyBaseError, SourceError
@@ -106,7 +106,7 @@ def _split(source: str) -> tuple[str, str]:
     """The place, and the SHA-256 that is named behind it."""
     if "#" not in source:
         return source, ""
-    place, fragment = urldefrag(source)
+    place, _, fragment = source.partition("#")
     match = _SHA256.fullmatch(fragment)
     if match is None:
         raise ReadyBaseError(
@@ -117,8 +117,8 @@ def _split(source: str) -> tuple[str, str]:
 
 def is_one_file(source: str) -> bool:
     """Whether a source names one ready base, rather than the place where bases of several versions lie."""
-    place = urldefrag(source)[0]
-    return (urlsplit(place).path if "://" in place else place).endswith(SUFFIX)
+    place = source.partition("#")[0]
+    return (place.partition("?")[0] if "://" in place else place).endswith(SUFFIX)
 
 
 def _address(place: str, minor: str) -> str:
@@ -136,7 +136,12 @@ def _local_file(place: str, minor: str) -> Path:
 
 
 def _downloaded(url: str, wanted: str, folder: Path, progress: Progress) -> Path:
-    parts = urlsplit(url)
+    try:
+        parts = urlsplit(url)
+    except ValueError as error:
+        raise ReadyBaseError(
+            f"{url[:300]!r} is not an address ({error}); give one that begins with https://"
+        ) from error
     if parts.scheme not in {"https", "http"}:
         raise ReadyBaseError(
             f"{url[:300]!r} is not an address to fetch from; give one that begins with https://"

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeAlias
 
 from kb_build.errors import SummaryError
 from kb_build.summaries.types import TokenPrice
+from simworlds.llm.prices import PRICES, undated
 
 BATCH_DISCOUNT = 0.5
 """What a token costs in a message batch, as a share of its price."""
@@ -15,7 +15,7 @@ BATCH_DISCOUNT = 0.5
 FALLBACK_CHARS_PER_TOKEN = 3.0
 """English with identifiers, on the cautious side; used where the API does not count tokens for us."""
 
-_DATE = re.compile(r"-\d{8}$")
+Thinking: TypeAlias = Literal["disable", "effort", "none", "unknown"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +27,7 @@ class ModelFacts:
     """
 
     price: TokenPrice | None
-    thinking: Literal["disable", "effort", "none", "unknown"]
+    thinking: Thinking
 
     @property
     def max_tokens(self) -> int:
@@ -40,29 +40,30 @@ class ModelFacts:
         return 120 if self.thinking in ("disable", "none") else 500
 
 
-# As published by Anthropic in November 2026. Haiku 5.5 costs five times as much for prompts of more than
-# 100,000 tokens, which the cap on a page's length rules out.
-MODELS: dict[str, ModelFacts] = {
-    "claude-haiku-5-5": ModelFacts(TokenPrice(0.10, 0.50), "disable"),
-    "claude-haiku-4-5": ModelFacts(TokenPrice(1.00, 5.00), "none"),
-    "claude-sonnet-5-5": ModelFacts(TokenPrice(2.00, 10.00), "effort"),
-    "claude-sonnet-5": ModelFacts(TokenPrice(2.00, 10.00), "effort"),
-    "claude-sonnet-4-6": ModelFacts(TokenPrice(3.00, 15.00), "none"),
-    "claude-sonnet-4-5": ModelFacts(TokenPrice(3.00, 15.00), "none"),
-    "claude-opus-5-5": ModelFacts(TokenPrice(4.00, 20.00), "effort"),
-    "claude-opus-5": ModelFacts(TokenPrice(5.00, 25.00), "disable"),
-    "claude-opus-4-8": ModelFacts(TokenPrice(5.00, 25.00), "none"),
-    "claude-opus-4-7": ModelFacts(TokenPrice(5.00, 25.00), "none"),
-    "claude-opus-4-6": ModelFacts(TokenPrice(5.00, 25.00), "none"),
-    "claude-opus-4-5": ModelFacts(TokenPrice(5.00, 25.00), "none"),
-    "claude-fable-5-2": ModelFacts(TokenPrice(8.00, 40.00), "effort"),
-    "claude-fable-5-1": ModelFacts(TokenPrice(10.00, 50.00), "effort"),
+_THINKING: dict[str, Thinking] = {
+    "claude-haiku-5-5": "disable",
+    "claude-haiku-4-5": "none",
+    "claude-sonnet-5-5": "effort",
+    "claude-sonnet-5": "effort",
+    "claude-sonnet-4-6": "none",
+    "claude-sonnet-4-5": "none",
+    "claude-opus-5-5": "effort",
+    "claude-opus-5": "disable",
+    "claude-opus-4-8": "none",
+    "claude-opus-4-7": "none",
+    "claude-opus-4-6": "none",
+    "claude-opus-4-5": "none",
+    "claude-fable-5-2": "effort",
+    "claude-fable-5-1": "effort",
 }
 
 
 def facts(model: str) -> ModelFacts:
     """The facts of ``model`` (its name with or without a date)."""
-    return MODELS.get(_DATE.sub("", model), ModelFacts(None, "unknown"))
+    name = undated(model)
+    listed = PRICES.get(name)  # dearer long prompts do not count: the cap on a page's length rules them out
+    price = TokenPrice(listed.input_usd, listed.output_usd) if listed is not None else None
+    return ModelFacts(price, _THINKING.get(name, "unknown"))
 
 
 def price_of(model: str, override: TokenPrice | None) -> TokenPrice:
@@ -71,7 +72,7 @@ def price_of(model: str, override: TokenPrice | None) -> TokenPrice:
     if price is None:
         raise SummaryError(
             f"No price is known for the model {model!r}, so its cost cannot be estimated. Give its price (US "
-            f"dollars per million input and output tokens), or use one of: {', '.join(MODELS)}."
+            f"dollars per million input and output tokens), or use one of: {', '.join(PRICES)}."
         )
     return price
 

@@ -69,7 +69,8 @@ class Diff:
 
 def is_under(path: str, prefix: str) -> bool:
     """Whether a path is ``prefix`` or goes on from it."""
-    return path.startswith(prefix) and not path[len(prefix) : len(prefix) + 1].isidentifier()
+    rest = path.removeprefix(prefix)
+    return path.startswith(prefix) and not (rest and f"_{rest[0]}".isidentifier())
 
 
 def diff(old: Extract, new: Extract, *, interface: bool = False) -> Diff:
@@ -223,14 +224,13 @@ def _part(
         return
     yield from ("", f"## {title}", "")
     group = None
-    for number, (path, text) in enumerate(sorted(entries.items())):
+    owned = [(path, owners.get(path, path.rpartition(".")[0]), entries[path]) for path in sorted(entries)]
+    # Where the whole owner came or went, its members follow from that.
+    told = [row for row in owned if row[1] not in entries]
+    for number, (path, owner, text) in enumerate(told):
         if limit is not None and number == limit:
-            yield f"- … and {len(entries) - limit} more"
+            yield f"- … and {len(told) - limit} more"
             return
-        owner = owners.get(path, path.rpartition(".")[0])
-        if owner in entries:
-            # The whole owner came or went: its members follow from that.
-            continue
         if owner != group:
             group = owner
             yield f"- **{owner or 'top level'}**"

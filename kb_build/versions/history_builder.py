@@ -175,7 +175,7 @@ def _paths(runtime: Runtime, home: Path, progress: Progress) -> tuple[set[str], 
 
 
 def _keep(old: ApiHistory, paths: dict[str, set[str]]) -> tuple[str, ...]:
-    """Adds to ``found`` what only the old file knows; returns those full versions."""
+    """Adds to ``paths`` what only the old file knows; returns those full versions."""
     known = {minor_of(version) for version in paths}
     kept = tuple(patch for patch in old.patches if minor_of(patch) not in known)
     for patch in kept:

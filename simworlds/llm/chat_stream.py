@@ -9,20 +9,19 @@ from __future__ import annotations
 
 import uuid
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, Field, NonNegativeInt, ValidationError
-from pydantic_core import from_json
 
 from simworlds.llm import tokens
 from simworlds.llm.messages import Block, Text, ToolUse, Turn, Usage
 from simworlds.llm.stream import BrokenStream
+from simworlds.llm.tool_input import read_input
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 _STOPS = {"length": "max_tokens", "content_filter": "refusal"}
-_LONGEST_SHOWN = 80
 
 
 class _Function(BaseModel):
@@ -177,13 +176,8 @@ def _tool_use(call: _Call, taken: set[str], *, is_cut: bool) -> ToolUse | None:
     # Nine letters and digits, which the strictest servers want.
     identifier = call.id if call.id and call.id not in taken else uuid.uuid4().hex[:9]
     taken.add(identifier)
-    text = "".join(call.pieces) or "{}"
     try:
-        arguments: Any = from_json(text, allow_inf_nan=False) if call.given is None else call.given
+        arguments = read_input("".join(call.pieces) if call.given is None else call.given)
     except ValueError as error:
-        fault = f"The arguments are not valid JSON: {error}. They begin with {text[:_LONGEST_SHOWN]!r}."
-    else:
-        if isinstance(arguments, dict):
-            return ToolUse(identifier, call.name, cast("dict[str, Any]", arguments))
-        fault = f"The arguments have to be a JSON object, not {text[:_LONGEST_SHOWN]!r}."
-    return None if is_cut else ToolUse(identifier, call.name, {}, fault)
+        return None if is_cut else ToolUse(identifier, call.name, {}, str(error))
+    return ToolUse(identifier, call.name, arguments)

@@ -73,6 +73,11 @@ PRICES: dict[str, Price] = {
 }
 
 
+def undated(model: str) -> str:
+    """A model's name as lists have it: without a date or ``latest`` behind it."""
+    return _DATE.sub("", model)
+
+
 class Prices:
     """The prices in use: the caller's (by the model's exact name) before the list's."""
 
@@ -81,7 +86,7 @@ class Prices:
 
     def of(self, model: str) -> Price | None:
         """The price of ``model`` (its name with or without a date), None where none is known."""
-        return self._own.get(model) or PRICES.get(_DATE.sub("", model))
+        return self._own.get(model) or PRICES.get(undated(model))
 
     def cost(self, model: str, usage: Usage) -> float | None:
         """Dollars for one request; None without a known price."""

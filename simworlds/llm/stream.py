@@ -8,14 +8,15 @@ known yet are ignored or kept as they came.
 from __future__ import annotations
 
 from collections import defaultdict
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 import httpx2
 from pydantic import BaseModel, NonNegativeInt
-from pydantic_core import from_json
 
 from simworlds.llm import tokens
 from simworlds.llm.messages import Block, Kept, Text, ToolUse, Turn, Usage
+from simworlds.llm.tool_input import read_input
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -174,12 +175,10 @@ class StreamedAnswer:
         if block.type != "tool_use":
             return Kept(block.to_dict(warnings=False))
         text = "".join(self._pieces[place])
-        try:
-            arguments = from_json(text or "{}", allow_inf_nan=False)
-        except ValueError:
-            arguments = None
-        if isinstance(arguments, dict) and isinstance(block.name, str) and isinstance(block.id, str):
-            return ToolUse(block.id, block.name, arguments)
+        with suppress(ValueError):
+            arguments = read_input(text)
+            if isinstance(block.name, str) and isinstance(block.id, str):
+                return ToolUse(block.id, block.name, arguments)
         if is_cut:
             return None
         raise BrokenStream(f"an invalid tool call: {text[:80]!r}")

@@ -6,9 +6,11 @@ as long as all else that the package does for a call. A pipe can be waited for i
 
 from __future__ import annotations
 
+import json
 import os
 import select
 from collections import deque
+from contextlib import suppress
 from typing import TYPE_CHECKING, Self
 
 import anyio
@@ -40,6 +42,18 @@ class _Stream:
         await self.aclose()
 
 
+def _read_leniently(line: str) -> SessionMessage | None:
+    """A message that pydantic does not read, so that its sender does not wait for ever; None if it is none.
+
+    Half of an emoji, which JavaScript writes where a text was cut, becomes a question mark; what is nested too deeply
+    is for the tools to refuse.
+    """
+    with suppress(ValueError, RecursionError):
+        whole = json.dumps(json.loads(line), ensure_ascii=False).encode(errors="replace")
+        return SessionMessage(types.jsonrpc_message_adapter.validate_python(json.loads(whole), by_name=False))
+    return None
+
+
 class PipeReader(_Stream):
     """The messages that the client sends: a stream as the MCP package reads it."""
 
@@ -63,7 +77,7 @@ class PipeReader(_Stream):
         try:
             return SessionMessage(types.jsonrpc_message_adapter.validate_json(line, by_name=False))
         except Exception as error:  # nothing that a client writes may end the server
-            return error
+            return _read_leniently(line) or error
 
     def _take(self, read: bytes) -> None:
         """Splits what was read into lines."""

@@ -153,6 +153,17 @@ def test_the_index_has_every_tolerance_with_its_value() -> None:
     assert "| `turn` | 5° |" in text
 
 
+def test_modules_that_the_pages_name_are_there() -> None:
+    modules = "\n".join(f"/{path.relative_to(REPO)}" for path in REPO.glob("[a-z]*/**/*.py"))
+    named = {
+        (page.name, path)
+        for page in (REPO / "docs").glob("*.md")
+        for path in re.findall(r"`([a-z_./]+/[a-z_]+\.py)`", page.read_text())
+    }
+    assert len(named) > 50
+    assert {(page, path) for page, path in named if f"/{path}\n" not in f"{modules}\n"} == set()
+
+
 def test_links_of_the_rules_pages_lead_to_pages() -> None:
     texts = pages()
     for name, text in texts.items():

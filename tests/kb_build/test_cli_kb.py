@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import os
 import pty
+import sqlite3
 import subprocess
 import sys
+from contextlib import closing
 from typing import TYPE_CHECKING
 
 import pytest
@@ -148,6 +150,24 @@ def test_info_of_a_damaged_base_says_what_to_do(small: Built) -> None:
     assert f"simworlds kb build {small.minor} --force" in done.stderr
     listed = run(small.home, "kb", "info")
     assert (listed.returncode, listed.stdout.strip(), listed.stderr) == (2, "", done.stderr)
+
+
+@pytest.mark.blender
+@pytest.mark.parametrize(
+    "damage",
+    ["DELETE FROM meta WHERE name = 'sources'", "UPDATE meta SET value = '[1]' WHERE name = 'sources'"],
+)
+def test_a_base_without_facts_about_itself_is_told_as_damaged(small: Built, damage: str) -> None:
+    with closing(sqlite3.connect(small.path, isolation_level=None)) as connection:
+        connection.execute(damage)
+    done = run(small.home, "kb", "info", small.minor)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert f"{small.path}: damaged (its facts: " in done.stderr
+    assert run(small.home, "kb", "info").stderr == done.stderr
+    if "UPDATE" in damage:
+        exported = run(small.home, "kb", "export", small.minor, "--output", str(small.home / "x.tar.xz"))
+        assert (exported.returncode, "damaged (its facts: " in exported.stderr) == (2, True)
+        assert not (small.home / "x.tar.xz").exists()
 
 
 @pytest.mark.blender

@@ -226,6 +226,18 @@ def test_a_blender_that_crashes_again_is_named(tmp_path: Path) -> None:
         build("5.1", options=options, home=tmp_path / "home")
 
 
+@pytest.mark.parametrize("damage", [b"\xff\n", b"[]\n"])
+def test_a_damaged_extract_is_removed_with_what_to_do(small: Built, damage: bytes) -> None:
+    change_a_page(small)
+    extract = next((small.home / "extracts").glob("*.jsonl"))
+    lines = extract.read_bytes().splitlines(keepends=True)
+    extract.write_bytes(b"".join([*lines[:9], damage, *lines[10:]]))
+    with pytest.raises(ExtractError, match=r"is damaged .* run the build again"):
+        build(None, options=small.options, home=small.home)
+    assert not extract.exists()
+    assert read_meta(small.path)["fingerprint"] == small.report.meta["fingerprint"]
+
+
 def test_an_extract_without_classes_is_refused_and_not_kept(tmp_path: Path) -> None:
     lines = '{"record":"blender","version":"5.1.2","build":"x"}\\n{"record":"end","lines":1}\\n'
     body = f"for word; do last=$word; done; printf '{lines}' > \"$last\""

@@ -139,6 +139,12 @@ def test_bases_of_another_make_are_refused(small: Built, damage: str, message: s
         verify_base(small.path)
 
 
+def test_a_base_without_its_tables_is_refused(small: Built) -> None:
+    alter(small.path, "DROP TABLE symbols")
+    with pytest.raises(StoreError, match=r"damaged \(no such table: symbols\).* --force"):
+        verify_base(small.path)
+
+
 def test_a_truncated_base_is_refused(small: Built) -> None:
     data = small.path.read_bytes()
     small.path.write_bytes(data[: len(data) - 3 * 4096])
@@ -232,7 +238,13 @@ def test_identifiers_of_this_versions_reference_resolve(built_once: Built, tmp_p
 
 
 @pytest.mark.parametrize(
-    "content", [b"two words\n", b"\xff\xfe\x00", b"# Sphinx inventory version 2\n#\n#\n#\nno"]
+    "content",
+    [
+        b"two words\n",
+        b"\xff\xfe\x00",
+        b"# Sphinx inventory version 2\n#\n#\n#\nno",
+        b"# Sphinx inventory version 2\n#",
+    ],
 )
 def test_a_reference_of_an_unknown_format_is_refused(small: Built, tmp_path: Path, content: bytes) -> None:
     reference = tmp_path / "reference"

@@ -59,6 +59,15 @@ def test_links_are_passed_over_wherever_they_lead(folder: Path, tmp_path: Path) 
     assert found.passed_over() == "5 links"
 
 
+def test_names_that_are_no_text_are_passed_over(folder: Path) -> None:
+    write(folder / "café.rst")
+    write(folder / os.fsdecode(b"caf\xe9.rst"))
+    write(folder / os.fsdecode(b"d\xe9\xe8") / "page.rst")
+    found = list_files(folder, is_page)
+    assert [file.name for file in found.files] == ["café.rst"]
+    assert found.passed_over() == "2 names that are not UTF-8"
+
+
 def test_the_folder_itself_may_be_reached_through_a_link(folder: Path, tmp_path: Path) -> None:
     write(folder / "page.rst", "text")
     (tmp_path / "link").symlink_to(folder)

@@ -17,6 +17,7 @@ NOTES = "made_of.json"
 _FRAME = re.compile(r"(-?\d{3,})\.png")
 _PNG_END = b"IEND\xaeB`\x82"
 _NAMED = 6
+_PARTS = ("settings", "frames", "scene")
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,11 +93,13 @@ class FrameCache:
 
 
 def _read(path: Path) -> dict[str, Any]:
+    """The notes; empty where they are of another shape than those that are written."""
     try:
-        notes = json.loads(path.read_text())
-    except (OSError, ValueError):
+        notes = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
         return {}
-    return notes if isinstance(notes, dict) else {}
+    is_whole = isinstance(notes, dict) and all(isinstance(notes.get(part), dict) for part in _PARTS)
+    return notes if is_whole else {}
 
 
 def _frames(notes: dict[str, Any]) -> Iterator[tuple[int, RenderedFrame]]:

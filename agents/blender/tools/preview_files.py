@@ -16,7 +16,8 @@ FOLDER = "previews"
 def new_preview(folder: RunFolder, name: str, png: bytes) -> SavedImage:
     """Saves a PNG under the next free number: ``previews/0007-NAME.png``."""
     previews = folder.root / FOLDER
-    numbers = (int(path.name[:4]) for path in previews.glob("[0-9][0-9][0-9][0-9]-*.png"))
+    begins = (path.name.partition("-")[0] for path in previews.glob("[0-9]*-*.png"))
+    numbers = (int(begin) for begin in begins if begin.isdecimal())
     path = previews / f"{1 + max(numbers, default=0):04d}-{name}.png"
     write_whole(path, png, durable=False)
     return SavedImage(png, path)

@@ -113,6 +113,11 @@ class Unknown(SphinxDirective):
 class InsideInclude(Include):
     """``include`` that stays inside the sources' folder."""
 
+    # The option ``parser`` imports a module by its name, and pages must not have code run.
+    option_spec: ClassVar = {
+        name: check for name, check in (Include.option_spec or {}).items() if name != "parser"
+    }
+
     def run(self) -> list[nodes.Node]:
         """What the file holds, or a warning."""
         return list(super().run()) if _is_inside(self, self.arguments[0]) else []

@@ -251,6 +251,17 @@ def test_tries_every_wall_but_those_that_only_show_from_outside(
     assert set(WALLS) - set(tried) == {"memory", "disk"}
 
 
+def test_a_damaged_knowledge_base_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SIMWORLDS_HOME", str(tmp_path))
+    base = tmp_path / "kb" / "blender-5.1.sqlite"
+    base.parent.mkdir()
+    base.write_bytes(b"not a database")
+    own = Runtime(Path("/opt/blender"), "executable", "5.1.2")
+    for runtime, text in ((None, "no base"), (own, "no base for Blender 5.1")):
+        found = doctor_checks._knowledge(None, runtime)
+        assert (found.state, found.text) == ("poor", f"{text}; not readable: {base}")
+
+
 def test_a_knowledge_base_that_is_there_is_found(base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SIMWORLDS_HOME", str(base.parent.parent))
     found = doctor_checks._knowledge(installed_bpy(), None)

@@ -154,6 +154,23 @@ BROKEN = {
 }
 
 
+def test_a_report_that_cannot_be_written_costs_no_outcome(
+    mended: Played, tmp_path: Path, alone: None
+) -> None:
+    shutil.copytree(mended.root, tmp_path / "run")
+    report = tmp_path / "run" / "report.html"
+    report.unlink(missing_ok=True)
+    report.mkdir()
+    done = said("resume", tmp_path / "run")
+    assert done.exit_code == 0, done.output
+    assert str(tmp_path / "run" / "scene.blend") in done.stdout.splitlines()
+    shown = said("show", tmp_path / "run", "--report")
+    assert shown.exit_code == 2
+    for result in (done, shown):
+        assert f"{report} cannot be written" in result.stderr
+        assert f"{own_command()} show {tmp_path / 'run'} --report" in result.stderr
+
+
 def test_runs_lists_good_and_broken_runs(mended: Played, base: Path, tmp_path: Path) -> None:
     (tmp_path / "kb").symlink_to(base.parent)
     with at_home(tmp_path):

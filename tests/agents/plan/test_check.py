@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import itertools
 import json
 from typing import Any
 
@@ -226,6 +227,44 @@ def test_a_cycle_over_several_objects_names_them_all() -> None:
         {"kind": "OnTopOf", "a": "Table", "b": "Chair 1"},
     ]
     assert any("'Table' on 'Chair 1' on 'Bowl' on 'Table'" in fault for fault in fault_texts(plan))
+
+
+def with_phases(count: int) -> dict[str, Any]:
+    """A plan in which one chair does everything at once."""
+    plan = a_plan()
+    phases = [
+        {"name": f"p{n}", "actor": "Chair 0", "kind": "hold", "start": 1, "end": 2} for n in range(count)
+    ]
+    return {**plan, "frame_end": 9, "motion": {"phases": phases}}
+
+
+def test_of_phases_at_one_time_each_is_told_once() -> None:
+    overlaps = [fault for fault in fault_texts(with_phases(4)) if "overlaps" in fault]
+    assert [fault.partition(":")[0] for fault in overlaps] == [f"motion.phases[{n}]" for n in (1, 2, 3)]
+
+
+def test_a_plan_that_is_too_large_to_compare_in_pairs_is_refused() -> None:
+    assert len(fault_texts(with_phases(1000))) == 200
+    for plan in (with_phases(1001), json.dumps(with_phases(1001))):
+        assert list(map(str, read_plan(plan)[1])) == [
+            "motion.phases: It has 1001 entries; the limit is 1000."
+        ]
+    unknown = {**a_plan(), **{f"field {n}": n for n in range(1000)}}
+    assert len(read_plan(unknown)[1]) == 200
+
+
+def test_a_tower_stands_in_whichever_order_it_is_planned() -> None:
+    chair = {"systems": ["furniture"], **CHAIR}
+    names = ["Floor", *(f"Level {n}" for n in range(300))]
+    levels = [{"name": name, **chair} for name in names[1:]]
+    rests = [{"kind": "OnTopOf", "a": a, "b": b} for a, b in itertools.pairwise(names[::-1])]
+    for relations in (rests, rests[::-1]):
+        plan = a_plan()
+        plan["objects"] += levels
+        plan["relations"] += relations
+        assert fault_texts(plan) == []
+        plan["relations"] += [{"kind": "OnTopOf", "a": "Floor", "b": names[-1]}]
+        assert [fault.count(" on 'Level ") for fault in fault_texts(plan)] == [300]
 
 
 @pytest.mark.parametrize(

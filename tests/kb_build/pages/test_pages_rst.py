@@ -231,6 +231,23 @@ def test_a_configuration_that_comes_with_the_sources_is_not_run(tmp_path: Path) 
     assert not trace.exists()
 
 
+def test_a_page_has_no_module_imported(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    modules = tmp_path / "modules"
+    modules.mkdir()
+    (modules / "named_by_a_page.py").write_text("print('imported', flush=True)")
+    monkeypatch.syspath_prepend(modules)
+    sources = tmp_path / "sources"
+    sources.mkdir()
+    (sources / "other.txt").write_text("Other words.\n")
+    text = "Page\n====\n\n.. include:: other.txt\n   :parser: named_by_a_page\n\n.. include:: other.txt\n"
+    page = read_one(sources, text)
+    assert "imported" not in capfd.readouterr().out
+    assert page.text.count("Other words.") == 1
+    assert page.warnings == ('line 4: Error in "include" directive: unknown option: "parser".',)
+
+
 def test_files_outside_the_sources_are_never_read(tmp_path: Path) -> None:
     (tmp_path / "secret.txt").write_text("swordfish")
     sources = tmp_path / "sources"

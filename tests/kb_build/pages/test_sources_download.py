@@ -9,6 +9,7 @@ import socket
 import threading
 import time
 import zipfile
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -90,6 +91,7 @@ def test_a_source_found_nowhere_else_is_downloaded_with_its_digest(tmp_path: Pat
     assert [path.name for path in guides.path.glob("info_*")] == ["info_overview.html"]
     stored = sorted(path.name for path in (tmp_path / "cache" / "downloads").iterdir())
     assert stored == [
+        ".lock",
         "blender_manual_v510_en.zip",
         "blender_manual_v510_en.zip.sha256",
         "blender_python_reference_5_1.zip",
@@ -104,6 +106,35 @@ def test_downloads_are_not_requested_again(tmp_path: Path, site: Site) -> None:
     site.requests.clear()
     assert look(tmp_path, site.url) == first
     assert site.requests == []
+
+
+def test_a_build_waits_for_the_download_of_another_one_and_takes_it(tmp_path: Path, site: Site) -> None:
+    begun = threading.Event()
+
+    def half_and_the_rest_later(handler: Handler) -> None:
+        del site.faults[MANUAL_PATH]
+        handler.send_response(200)
+        handler.send_header("Content-Length", str(len(MANUAL)))
+        handler.end_headers()
+        handler.wfile.write(MANUAL[:150_000])
+        handler.wfile.flush()
+        begun.set()
+        site.released.wait()
+        handler.wfile.write(MANUAL[150_000:])
+
+    def waits(what: str, done: int, total: int | None) -> None:
+        if what.startswith("waiting"):
+            site.released.set()
+
+    site.faults[MANUAL_PATH] = half_and_the_rest_later
+    with ThreadPoolExecutor() as pool:
+        first = pool.submit(look, tmp_path, site.url)
+        begun.wait()
+        second = pool.submit(look, tmp_path, site.url, progress=waits)
+        second.add_done_callback(lambda _: site.released.set())
+        assert source(first.result()["manual"]).sha256 == hashlib.sha256(MANUAL).hexdigest()
+        assert second.result() == first.result()
+    assert [path for path, _ in site.requests] == [MANUAL_PATH, GUIDES_PATH]
 
 
 def test_a_newer_manual_is_fetched_when_it_is_asked_for(tmp_path: Path, site: Site) -> None:
@@ -336,6 +367,23 @@ def test_an_interrupt_keeps_what_has_arrived_for_the_next_run(tmp_path: Path, si
         download(site.url + MANUAL_PATH, target, patience=DownloadPatience(seconds=60.0))
         == hashlib.sha256(MANUAL).hexdigest()
     )
+
+
+def test_a_folder_of_downloads_that_cannot_be_written_to_is_named(tmp_path: Path, site: Site) -> None:
+    (tmp_path / "cache").mkdir()
+    (tmp_path / "cache" / "downloads").touch()
+    said = reason(look(tmp_path, site.url)["manual"])
+    assert f"{tmp_path / 'cache' / 'downloads'} cannot be written to (File exists)" in said
+    assert site.requests == []
+
+
+def test_a_beginning_is_never_taken_for_that_of_a_newer_file(tmp_path: Path, site: Site) -> None:
+    part = tmp_path / "m.zip.part"
+    part.write_bytes(b"an older file's beginning")
+    (tmp_path / "m.zip.part.json").mkdir()  # as if the process ended there
+    with pytest.raises(SourceError, match="could not be stored"):
+        download(site.url + MANUAL_PATH, tmp_path / "m.zip", patience=DownloadPatience(seconds=60.0))
+    assert part.read_bytes() == b""
 
 
 def test_a_place_that_cannot_be_written_to_is_named(tmp_path: Path, site: Site) -> None:

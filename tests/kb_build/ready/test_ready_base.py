@@ -320,7 +320,14 @@ def test_a_checksum_behind_the_address_pins_the_file(ready: Ready, site: Site, t
 
 
 @pytest.mark.parametrize(
-    "source", ["http://192.0.2.1/bases", "ftp://127.0.0.1/x.tar.xz", "/nowhere/x.tar.xz"]
+    "source",
+    [
+        "http://192.0.2.1/bases",
+        "ftp://127.0.0.1/x.tar.xz",
+        "/nowhere/x.tar.xz",
+        "https://[::1",
+        f"https://[::1#sha256={'0' * 64}",
+    ],
 )
 def test_a_place_that_cannot_be_trusted_or_read_is_refused(tmp_path: Path, source: str) -> None:
     with pytest.raises(ReadyBaseError):

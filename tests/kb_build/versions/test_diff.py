@@ -72,8 +72,10 @@ def test_panels_are_left_out_unless_asked_for() -> None:
 
 
 def test_a_prefix_ends_where_a_name_ends() -> None:
-    other = replace(SIZE, path="bpy.types.AB.size", owner="bpy.types.AB")
-    found = diff(extract("4.5.0"), extract("5.1.0", CLASS, SIZE, other)).under("bpy.types.A")
+    others = [
+        replace(SIZE, path=f"bpy.types.{name}.size", owner=f"bpy.types.{name}") for name in ("AB", "A2", "A_")
+    ]
+    found = diff(extract("4.5.0"), extract("5.1.0", CLASS, SIZE, *others)).under("bpy.types.A")
     assert [entry.path for entry in found.added] == ["bpy.types.A", "bpy.types.A.size"]
 
 
@@ -95,6 +97,15 @@ def test_a_long_part_is_cut_and_says_by_how_much() -> None:
     text = format_diff(diff(extract("4.5.0", CLASS), extract("5.1.0", CLASS, *many)), limit=5)
     assert "- … and 15 more" in text
     assert text.count("property") == 6
+
+
+def test_members_that_follow_from_their_class_take_no_place_of_the_limit() -> None:
+    many = [replace(SIZE, path=f"bpy.types.A.p{n:02}", owner="bpy.types.A") for n in range(20)]
+    more = [replace(CLASS, path=f"bpy.types.B{n}") for n in range(3)]
+    found = diff(extract("4.5.0"), extract("5.1.0", CLASS, *many, *more))
+    text = format_diff(found, limit=3)
+    assert [name in text for name in ("`A`", "`B0`", "`B1`", "`B2`")] == [True, True, True, False]
+    assert "- … and 1 more" in text
 
 
 def test_the_json_form_survives_json() -> None:

@@ -158,7 +158,15 @@ def test_thinking_is_shown_and_not_sent_back(server: FakeChatAPI) -> None:
 
 
 @pytest.mark.parametrize(
-    "arguments", ['{"code": "print(1)', "print(1)", "[1]", '{"code": NaN}', "[" * 100_000]
+    "arguments",
+    [
+        '{"code": "print(1)',
+        "print(1)",
+        "[1]",
+        '{"code": NaN}',
+        '{"frames": [{"to": 1e999}]}',
+        "[" * 100_000,
+    ],
 )
 def test_a_call_that_cannot_be_read_says_why_and_can_be_sent_back(
     server: FakeChatAPI, arguments: str
@@ -171,6 +179,19 @@ def test_a_call_that_cannot_be_read_says_why_and_can_be_sent_back(
     again = ask("Begin.", _assistant(call), user(ToolResult(call.id, (Text(call.fault),), failed=True)))
     server.answer = lambda params: Said("I see.")
     assert model.answer(again).text == "I see."
+
+
+def test_arguments_that_a_server_has_decoded_are_held_to_the_same() -> None:
+    deep: dict[str, Any] = {}
+    for _ in range(5000):
+        deep = {"a": deep}
+    for given in ({"frames": [{"to": float("inf")}]}, {"frames": float("nan")}, deep):
+        called = {"index": 0, "id": "a", "function": {"name": "blender_trial", "arguments": given}}
+        answer = ChatAnswer()
+        list(answer.read([{"choices": [{"delta": {"tool_calls": [called]}, "finish_reason": "stop"}]}]))
+        (call,) = answer.turn().calls
+        assert (call.name, call.input) == ("blender_trial", {})
+        assert "JSON" in call.fault
 
 
 def test_a_cut_off_call_is_left_out(server: FakeChatAPI) -> None:

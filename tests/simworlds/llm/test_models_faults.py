@@ -246,6 +246,7 @@ def test_unknown_events_and_what_follows_the_message_are_ignored(api, claude, to
         [START, CALL, input_of("[1]"), STOP, END, LAST],
         [START, CALL, input_of('{"code": "import bp'), STOP, END, LAST],
         [START, CALL, input_of('{"code": NaN}'), STOP, END, LAST],
+        [START, CALL, input_of('{"frames": [1, -1e999]}'), STOP, END, LAST],
         [START, CALL, input_of("{'code': 1}"), STOP, END, LAST],
         [START, CALL, input_of("[" * 5000), STOP, END, LAST],
         [START, CALL, input_of('{"code": "\\ud800"}'), STOP, END, LAST],

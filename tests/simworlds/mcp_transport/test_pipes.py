@@ -66,6 +66,23 @@ async def test_lines_are_messages_and_others_are_errors(
     assert ["" if isinstance(message, Exception) else method(message) for message in received] == expected
 
 
+async def test_a_request_is_read_though_it_has_half_an_emoji_or_is_nested_deeply(
+    ends: tuple[int, int],
+) -> None:
+    deep = '{"a":' * 300 + "1" + "}" * 300
+    for number, given in enumerate((r'{"code": "a\ud83d", "\udc00": "\ud83d\ude00"}', deep)):
+        params = f'{{"name": "t", "arguments": {given}}}'
+        os.write(
+            ends[1], f'{{"jsonrpc":"2.0","id":{number},"method":"tools/call","params":{params}}}\n'.encode()
+        )
+    reader = PipeReader(ends[0])
+    cut, nested = (await reader.receive(), await reader.receive())
+    assert isinstance(cut, SessionMessage)
+    assert isinstance(cut.message, types.JSONRPCRequest)
+    assert cut.message.params == {"name": "t", "arguments": {"code": "a?", "?": "😀"}}
+    assert isinstance(nested, SessionMessage)
+
+
 async def test_a_message_may_arrive_in_pieces_and_be_longer_than_a_pipe_holds(ends: tuple[int, int]) -> None:
     text = "é" * 300_000
     line = json.dumps({"jsonrpc": "2.0", "method": text}, ensure_ascii=False).encode() + b"\n"

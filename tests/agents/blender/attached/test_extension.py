@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -122,3 +123,41 @@ def test_a_program_that_is_no_blender_is_told(tmp_path: Path) -> None:
     assert "tells no version of a Blender" in result.output
     gone = CliRunner().invoke(command, ["install", "--blender-exe", str(tmp_path / "none")])
     assert "cannot be started" in gone.output
+
+
+def invoke_with_a_blender(folder: Path, installing: str, checking: str) -> tuple[int, str]:
+    """What the command says of a Blender that does these two things."""
+    program = folder / "blender"
+    program.write_text(
+        f"#!/bin/sh\ncase $1 in --version) echo Blender 5.1.0;; --command) {installing};; *) {checking};; esac\n"
+    )
+    program.chmod(0o755)
+    result = CliRunner().invoke(command, ["install", "--blender-exe", str(program)])
+    return result.exit_code, result.output
+
+
+def test_a_blender_counts_as_equipped_when_it_has_the_extension_enabled(tmp_path: Path) -> None:
+    enabled, not_enabled = "echo SimWorlds is enabled", "echo SimWorlds is not enabled"
+    code, said = invoke_with_a_blender(tmp_path, "echo 'ALSA lib error: no card'", enabled)
+    assert (code, said[:24]) == (0, "Installed in Blender 5.1")
+    for installing, checking, reason in (
+        ("kill -SEGV $$", enabled, "exit code -11"),
+        ("echo no such file; exit 1", enabled, "no such file"),
+        ("true", not_enabled, "is not enabled"),
+        ("true", "exit 1", "exit code 0"),
+    ):
+        code, said = invoke_with_a_blender(tmp_path, installing, checking)
+        assert (code, "did not install the extension" in said, reason in said) == (2, True, True), said
+
+
+@pytest.mark.blender
+def test_an_installed_blender_gets_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    blender = shutil.which("blender")
+    if blender is None:
+        pytest.skip("no blender on PATH")
+    for name in ("CONFIG", "SCRIPTS"):
+        (tmp_path / name).mkdir()
+        monkeypatch.setenv(f"BLENDER_USER_{name}", str(tmp_path / name))
+    result = CliRunner().invoke(command, ["install", "--blender-exe", blender])
+    assert result.exit_code == 0, result.output
+    assert list((tmp_path / "SCRIPTS").rglob(f"{extension.NAME}/__init__.py"))

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,14 @@ from processes import becomes
 from running import run_here
 from scenes import SOON, build
 from test_verify_tool import PLAN, SCENE
+
+from agents.blender.launch import make_launch
+from agents.blender.run_folder import RunFolder
+from agents.blender.supervisor import Supervisor
+from agents.blender.tools.base import Call
+from agents.commands.verify import _draw  # pyright: ignore[reportPrivateUsage] - no scene ends Blender only there
+from agents.protocol.findings import Report
+from agents.protocol.report.summary import VerificationScope
 
 if TYPE_CHECKING:
     from live_session import LiveSession
@@ -141,6 +150,16 @@ def test_findings_are_1_and_come_as_table_json_and_picture(session: LiveSession,
     assert "V2" not in done.stdout
 
 
+def test_a_drawing_that_ends_blender_is_told_beside_the_report(tmp_path: Path) -> None:
+    folder = RunFolder.make(tmp_path / "run")
+    scope = VerificationScope((), file="scene.blend")
+    with closing(Supervisor(make_launch(folder.workspace), folder)) as blender:
+        blender.end()
+        why = _draw(blender, Report((), ()), Call(), scope, tmp_path / "seen.png")
+    assert "being ended" in why
+    assert not (tmp_path / "seen.png").exists()
+
+
 def test_a_plan_is_judged_by(session: LiveSession, tmp_path: Path) -> None:
     saved(session, SCENE, tmp_path / "room.blend")
     (tmp_path / "plan.json").write_text(json.dumps(PLAN))
@@ -164,8 +183,16 @@ def test_the_plan_of_the_run_that_made_a_file_is_found(session: LiveSession, tmp
     done = verify(tmp_path, *words)
     assert json.loads(done.stdout)["plan"] == PLAN["title"]
     assert "plan.json, of the run that made the file" in done.stderr
-    (tmp_path / "plan.json").write_text('{"title": "An edit plan"}')
-    assert json.loads(verify(tmp_path, *words).stdout)["plan"] == ""
+    task = {"kind": "modify", "stage": "light", "targets": ["Sun"], "instruction": "Dim it."}
+    edit = {"title": "An edit", "tasks": [task], "render": {"kind": "still"}}
+    (tmp_path / "plan.json").write_text(json.dumps(edit))
+    done = verify(tmp_path, *words)
+    assert (json.loads(done.stdout)["plan"], "Warning" in done.stderr) == ("", False)
+    (tmp_path / "plan.json").write_text(json.dumps(PLAN)[:-9])
+    done = verify(tmp_path, *words)
+    assert json.loads(done.stdout)["plan"] == ""
+    assert "Warning: the scene is checked without a plan.\nThe plan " in done.stderr
+    assert "plan: The plan is not valid JSON" in done.stderr
 
 
 @pytest.fixture(scope="module")
@@ -208,6 +235,12 @@ def test_numbered_meshes_that_are_in_no_object_are_one_row(unorganised: Path, tm
     assert "hard ×200" in done.stdout
 
 
+def test_a_frame_that_blender_does_not_have_is_refused(tmp_path: Path) -> None:
+    done = verify(tmp_path, "any.blend", "--frame", "99999999999")
+    assert done.returncode == 2
+    assert "99999999999 is not in the range" in done.stderr
+
+
 @pytest.mark.parametrize(
     ("words", "why"),
     [
@@ -226,6 +259,7 @@ def test_numbered_meshes_that_are_in_no_object_are_one_row(unorganised: Path, tm
         ),
         (["text.blend", "--plan", "loose.json"], "tolerances: contact cannot be loosened"),
         (["text.blend", "--image", "nowhere/seen.png"], "nowhere for seen.png does not exist"),
+        (["text.blend", "--image", "text.blend"], "--image text.blend is to be a PNG: give it a name that"),
         (["text.blend", "--blender-exe", "nowhere/blender"], "No Blender was found"),
     ],
 )
