@@ -18,7 +18,7 @@ _TRACEBACK = re.compile(
     r"|\bLocation: (?=[/<]|\w:)[^\n]{1,300}?:\d+(?!\S)"  # of the operator's call, mostly in Blender's own ``ops.py``
 )
 # What Blender's log puts before a line: the time, and which part of Blender writes it.
-_OF_LOG = r"\b\w+(?:\.\w+)*\s+\|\s+(?:DEBUG|INFO|WARNING|ERROR)\b|\bWARN\ \(\w+(?:\.\w+)*\):"
+_OF_LOG = r"(?<![\w.])\w++(?:\.\w++)*+\s++\|\s++(?:DEBUG|INFO|WARNING|ERROR)\b|\bWARN\ \(\w++(?:\.\w++)*+\):"
 _QUOTED = re.compile(r"(?<!\w)(['\"])[^'\"\n]{0,60}\1")
 
 # Who types a message from memory leaves its quotes out.
