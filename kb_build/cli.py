@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import functools
 import json
-import signal
 import sys
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 import click
 
@@ -17,7 +16,7 @@ from simworlds.errors import UserError
 from simworlds.how_to_get_bases import how_to_get
 from simworlds.operating_system import SYSTEM
 from simworlds.own_command import own_command
-from simworlds.releases import USUAL
+from simworlds.releases import ROLES, USUAL
 from simworlds.settings import (
     BASE_URL_VARIABLE,
     base_path,
@@ -28,6 +27,7 @@ from simworlds.settings import (
 )
 from simworlds.terminal.finite_range import FiniteRange
 from simworlds.terminal.output_file import OutputFile
+from simworlds.terminal.termination import unwind_on_termination
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from kb_build.pipeline import BuildReport
     from simworlds.terminal.progress import Progress
 
-_ROLES = ("manual", "guides")
 _OTHERS = {"pack": "kb_serve.packs.cli"}
 _PATH = click.Path(path_type=Path)
 _P = ParamSpec("_P")
@@ -95,7 +94,7 @@ def kb() -> None:
 
 def _roles(_context: click.Context, _parameter: click.Parameter, value: str | None) -> frozenset[str]:
     roles = frozenset(role.strip() for role in (value or "").split(",") if role.strip())
-    if unknown := roles - set(_ROLES):
+    if unknown := roles - set(ROLES):
         raise click.BadParameter(f"{', '.join(sorted(unknown))}: give manual, guides or both (manual,guides)")
     return roles
 
@@ -142,7 +141,7 @@ def build(version: str | None, **given: Any) -> None:
     from kb_build import pipeline  # noqa: PLC0415 - other commands do without
     from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
-    signal.signal(signal.SIGTERM, _terminated)
+    unwind_on_termination()
     options = pipeline.BuildOptions(
         blender_exe=given["blender_exe"],
         manual=given["manual"],
@@ -162,11 +161,6 @@ def build(version: str | None, **given: Any) -> None:
     with shown_progress() as progress:
         report = pipeline.build(version, options=options, home=home_folder(), progress=progress)
     _tell(report)
-
-
-def _terminated(_number: int, _frame: object) -> NoReturn:
-    """Unwinds like Ctrl-C: no child process stays behind."""
-    raise KeyboardInterrupt
 
 
 def _tell(report: BuildReport) -> None:
@@ -263,7 +257,7 @@ def export_command(version: str, output: Path | None) -> None:
     from kb_build.ready.export import export_base, ready_name  # noqa: PLC0415
     from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
-    signal.signal(signal.SIGTERM, _terminated)
+    unwind_on_termination()
     base = _base(version)
     target = output or Path(ready_name(read_meta(base).get("minor", "")))
     with shown_progress() as progress:
@@ -297,7 +291,7 @@ def fetch_command(version: str, source: str) -> None:
     from kb_build.ready.fetch import fetch_base  # noqa: PLC0415 - only here
     from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
-    signal.signal(signal.SIGTERM, _terminated)
+    unwind_on_termination()
     with shown_progress() as progress:
         fetched = fetch_base(version, source, home=home_folder(), progress=progress)
     click.echo(f"{fetched.path}: Blender {fetched.manifest.blender}, {fetched.manifest.size / 1e6:.1f} MB")
@@ -322,7 +316,7 @@ def diff_command(old: str, new: str, **given: Any) -> None:
     from kb_build.versions.diff import diff, format_diff, is_under  # noqa: PLC0415 - only here
     from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
-    signal.signal(signal.SIGTERM, _terminated)
+    unwind_on_termination()
     with shown_progress() as progress:
         extracts = _ask(old, progress), _ask(new, progress)
         differences = diff(*extracts, interface=given["interface"])
@@ -384,7 +378,7 @@ def history(
     from simworlds.releases import releases  # noqa: PLC0415
     from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
-    signal.signal(signal.SIGTERM, _terminated)
+    unwind_on_termination()
     wanted = versions or (() if stubs else tuple(release.minor for release in releases()))
     with shown_progress() as progress:
         report = build_history(

@@ -8,11 +8,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 
-def format_count(number: int, noun: str) -> str:
-    """``1 frame``, ``1,200 frames``."""
-    return f"{number:,} {noun}" + ("" if number == 1 else "s")
-
-
 def format_list(items: Sequence[str], most: int) -> str:
     """The first ``most`` items with commas between, and how many more there are."""
     more = f" and {len(items) - most} more" if len(items) > most else ""

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel
 
-from agents.blender.formatting import format_count
 from agents.blender.tools.base import NotChecked
+from simworlds.counting import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -62,7 +62,7 @@ class PreFlight:
         groups: dict[str, list[CodeFinding]] = {}
         for finding in self.errors:
             groups.setdefault(finding.message, []).append(finding)
-        count = format_count(len(self.errors), "error")
+        count = counted(len(self.errors), "error")
         parts = [f"**Nothing was executed; the scene is unchanged.** {count} for Blender {self.blender}:"]
         parts += [_described(group) for group in [*groups.values()][:_MOST_ERRORS]]
         if (left := len(groups) - _MOST_ERRORS) > 0:

@@ -14,6 +14,7 @@ from mcp.shared.exceptions import MCPError
 
 from agents.blender import plan_check
 from agents.plan.part import STAGES
+from agents.roles.names import ROLES
 from agents.roles.prompts import (
     protocol_text,
     role_text,
@@ -63,7 +64,7 @@ def _everything(*, edit: bool) -> str:
     """Everything the team knows: the loop, the roles, the protocol, the stages."""
     return _joined(
         team_text(edit=edit),
-        *(role_text(role, edit=edit) for role in ("planner", "coder", "reviewer", "final_reviewer")),
+        *(role_text(role, edit=edit) for role in ROLES),
         protocol_text(edit=edit),
         rules_text(edit=edit),
         shapes_text("planner", edit=edit),

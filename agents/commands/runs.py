@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from agents.roles.names import ROLES
 from simworlds.operating_system import SYSTEM
 from simworlds.own_command import own_command
 from simworlds.terminal.finite_range import FiniteRange
@@ -27,7 +28,6 @@ EXITS = {"done": 0, "aborted": 1, "failed": 2, "stopped": 3}
 _LIBRARY = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=Path)
 _FOLDER = click.Path(file_okay=False, resolve_path=True, path_type=Path)
 _FILE = click.Path(exists=True, dir_okay=False, resolve_path=True, path_type=Path)
-_ROLES = ("planner", "coder", "reviewer", "final_reviewer")
 
 
 class _RunFolder(click.Path):
@@ -76,7 +76,7 @@ _model = _options(
         "--price", metavar="IN/OUT", help="Dollars per million tokens, of models that are in no list."
     ),
     click.option(
-        "--role-model", multiple=True, metavar="ROLE=NAME", help=f"Another model for {', '.join(_ROLES)}."
+        "--role-model", multiple=True, metavar="ROLE=NAME", help=f"Another model for {', '.join(ROLES)}."
     ),
 )
 _RENDER = (
@@ -261,8 +261,8 @@ def _of_model(given: dict[str, Any]) -> dict[str, Any]:
     asked = {name: given[name] for name in ("provider", "model", "price") if given[name] is not None}
     models = dict(one.partition("=")[::2] for one in given["role_model"])
     for role, name in models.items():
-        if role not in _ROLES or not name:
-            raise click.UsageError(f"--role-model takes ROLE=NAME with a role of {', '.join(_ROLES)}.")
+        if role not in ROLES or not name:
+            raise click.UsageError(f"--role-model takes ROLE=NAME with a role of {', '.join(ROLES)}.")
     return asked | {"models": models}
 
 

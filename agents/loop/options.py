@@ -14,7 +14,6 @@ Mode = Literal["make", "edit"]
 Origin = Literal["live", "session", "replay"]
 
 BEFORE_DRAFTS = {"early": False, "planner_looks": False}  # in records that are older than these options
-ROLES = ("planner", "coder", "reviewer", "final_reviewer")
 
 
 class Options(BaseModel):

@@ -19,10 +19,11 @@ from agents.loop.errors import Aborted, NoRun, RunError, Stopping, Unusable
 from agents.loop.events import RunBegan, RunEnded, SessionBegan
 from agents.loop.journal import NAME, Journal
 from agents.loop.leaving import LATEST, leave
-from agents.loop.options import BEFORE_DRAFTS, ROLES, Options, RunLimits
+from agents.loop.options import BEFORE_DRAFTS, Options, RunLimits
 from agents.loop.reducer import read_run_state
 from agents.loop.run import SCENE, Run
 from agents.loop.tool_client import ToolClient
+from agents.roles.names import ROLES
 from simworlds.folder_lock import locked
 from simworlds.installed import own_version
 from simworlds.llm.errors import ModelError, OverBudget

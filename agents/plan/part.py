@@ -2,22 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field
 
-Stage = Literal["modeling", "uv", "texture", "deformation_setup", "motion", "camera", "light", "render"]
 # In the order in which a scene is built (paper, section "Staged Construction Pipeline").
-STAGES: tuple[Stage, ...] = (
-    "modeling",
-    "uv",
-    "texture",
-    "deformation_setup",
-    "motion",
-    "camera",
-    "light",
-    "render",
-)
+Stage = Literal["modeling", "uv", "texture", "deformation_setup", "motion", "camera", "light", "render"]
+STAGES: tuple[Stage, ...] = get_args(Stage)
 ALWAYS: frozenset[Stage] = frozenset(
     {"modeling", "camera", "light", "render"}
 )  # no scene can leave these out

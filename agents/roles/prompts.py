@@ -11,7 +11,7 @@ from __future__ import annotations
 import re
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from agents.plan.edit import EditPlan
 from agents.plan.part import STAGES, Stage
@@ -28,10 +28,8 @@ if TYPE_CHECKING:
 
     from pydantic import BaseModel
 
+    from agents.roles.names import Role
     from agents.roles.sheets import Solver
-
-Role = Literal["planner", "coder", "reviewer", "final_reviewer"]
-ROLES: tuple[Role, ...] = ("planner", "coder", "reviewer", "final_reviewer")
 
 FOLDER = Path(__file__).with_name("prompts")
 # What a role answers; the planner also writes the plan of the whole. What is read explains itself.

@@ -6,22 +6,16 @@ Progress goes to stderr, line by line; so does the error that it ends with.
 from __future__ import annotations
 
 import argparse
-import signal
 import sys
 from pathlib import Path
-from typing import NoReturn
 
 from kb_build.errors import FetchedElsewhere
 from kb_build.ready.fetch import fetch_base, is_one_file
 from simworlds.errors import UserError
 from simworlds.terminal.progress import shown_progress
+from simworlds.terminal.termination import unwind_on_termination
 
 _ELSEWHERE = 3
-
-
-def _terminated(_number: int, _frame: object) -> NoReturn:
-    """Unwinds like Ctrl-C: nothing that is half done stays."""
-    raise KeyboardInterrupt
 
 
 def main() -> int:
@@ -34,7 +28,7 @@ def main() -> int:
     )
     parser.add_argument("--home", type=Path, required=True)
     given = parser.parse_args()
-    signal.signal(signal.SIGTERM, _terminated)
+    unwind_on_termination()
     version = "" if given.any and is_one_file(given.source) else given.version
     try:
         with shown_progress() as progress:

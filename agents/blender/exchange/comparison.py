@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from agents.blender.formatting import format_count, format_list
+from agents.blender.formatting import format_list
+from simworlds.counting import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -38,11 +39,9 @@ def differences(sent: ExchangeFacts, back: ExchangeFacts, known: Format) -> list
 
 def _counts(sent: ExchangeFacts, back: ExchangeFacts, known: Format) -> Iterator[str]:
     if sent.triangles != back.triangles:
-        yield f"{format_count(back.triangles, 'triangle')} instead of {sent.triangles:,}"
+        yield f"{counted(back.triangles, 'triangle')} instead of {sent.triangles:,}"
     if known.whole and sent.meshes != back.meshes:
-        yield f"{format_count(back.meshes, 'mesh')} with faces instead of {sent.meshes:,}".replace(
-            "meshs", "meshes"
-        )
+        yield f"{back.meshes:,} {'mesh' if back.meshes == 1 else 'meshes'} with faces instead of {sent.meshes:,}"
     if known.uv_maps and sent.uv_mapped != back.uv_mapped:
         yield f"{back.uv_mapped:,} with UV maps instead of {sent.uv_mapped:,}"
     if known.whole:
@@ -55,12 +54,7 @@ def _counts(sent: ExchangeFacts, back: ExchangeFacts, known: Format) -> Iterator
             yield f"{after['EMPTY']:,} of type empty instead of {before['EMPTY']:,}"
     if known.hierarchy and back.parented < sent.parented:
         yield f"{back.parented:,} with a parent instead of {sent.parented:,}"
-    if (
-        known.motion
-        and (sent.poses or not back.poses)
-        and bool(sent.animated) != bool(back.animated)
-        and sent.poses
-    ):
+    if known.motion and sent.poses and bool(sent.animated) != bool(back.animated):
         yield f"{back.animated:,} animated objects instead of {sent.animated:,}"
 
 

@@ -11,11 +11,12 @@ from pydantic import Field
 
 from agents.blender.assets.library import AssetLibrary, Kind, LibraryAsset, find_assets
 from agents.blender.assets.replies import PlacedAsset
-from agents.blender.formatting import format_count, format_list
+from agents.blender.formatting import format_list
 from agents.blender.sheets import contact_sheet
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
 from agents.blender.tools.kept_scene import kept_scene
 from agents.blender.tools.preview_files import new_preview
+from simworlds.counting import counted
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
@@ -89,7 +90,7 @@ def _search(
     folder: RunFolder, library: AssetLibrary, assets: list[LibraryAsset], arguments: AssetArguments
 ) -> Result:
     found = find_assets(assets, arguments.query, arguments.kind)
-    lines = [f"{format_count(len(found), 'asset')} of {len(assets):,} in {library.root}:"]
+    lines = [f"{counted(len(found), 'asset')} of {len(assets):,} in {library.root}:"]
     lines += [f"- {_line(asset)}" for asset in found[:_LISTED]]
     if len(found) > _LISTED:
         lines.append(f"- {len(found) - _LISTED} more; search with more words")

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field
 
-from agents.blender.formatting import format_count
 from agents.blender.preflight import PreFlight, check_before_running
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
+from simworlds.counting import counted
 from simworlds.sandbox.replies import Claim, Text
 
 if TYPE_CHECKING:
@@ -123,7 +123,7 @@ def title_of(code: str) -> str:
 def _how_to_undo(before: Checkpoint | None, unkept: int) -> str:
     if before is None:
         return ""
-    calls = f" and the {format_count(unkept, 'call')} before it" if unkept else ""
+    calls = f" and the {counted(unkept, 'call')} before it" if unkept else ""
     return f" To undo it{calls}: blender_load(checkpoint={before.number}), if you have that tool; {_BEFORE_IT_FAILS}."
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from pydantic import Field
 
 from agents.blender.assets.poly_haven import CREDIT, Kind, Resolution
-from agents.blender.formatting import format_count, format_size
+from agents.blender.formatting import counted, format_size
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from simworlds.sandbox.errors import Refusal
 
@@ -56,7 +56,7 @@ def run(context: ToolContext, arguments: FetchArguments, call: Call) -> Result:
         use = f"Bring it in with blender_import(path={str(main)!r})."
     else:
         use = f"Find its id with blender_assets(query={arguments.fetch!r}), and use it."
-    files = f"{format_count(len(fetched.files), 'file')}, {format_size(fetched.bytes)}"
+    files = f"{counted(len(fetched.files), 'file')}, {format_size(fetched.bytes)}"
     lines = [
         f"Fetched {note.name} into {fetched.folder} ({files}).",
         f"- licence: {note.license}; by {note.author or 'nobody named'}; {note.page}",
@@ -69,7 +69,7 @@ def run(context: ToolContext, arguments: FetchArguments, call: Call) -> Result:
 
 def _search(online: PolyHaven, arguments: FetchArguments) -> Result:
     found = online.search(arguments.query, arguments.kind)
-    lines = [f"{format_count(len(found), 'asset')} among Poly Haven's {arguments.kind}:"]
+    lines = [f"{counted(len(found), 'asset')} among Poly Haven's {arguments.kind}:"]
     lines += [f"- `{name}`: {_words(asset)}" for name, asset in found[:_LISTED]]
     if len(found) > _LISTED:
         lines.append(f"- {len(found) - _LISTED} more; search with more words")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import Field
 
 from agents.blender.checkpoints import KEPT
-from agents.blender.formatting import format_count, format_list, format_size
+from agents.blender.formatting import counted, format_list, format_size
 from agents.blender.saved_files import (
     COPY_NAME,
     CacheReport,
@@ -114,9 +114,9 @@ def save(context: ToolContext, arguments: SaveArguments, call: Call) -> Result:
         "faults": faults,
         "checkpoint": checkpoint.number,
     }
-    lines = [f"Saved {target} ({format_size(copy.bytes)}, {format_count(copy.objects, 'object')})."]
+    lines = [f"Saved {target} ({format_size(copy.bytes)}, {counted(copy.objects, 'object')})."]
     if count:
-        files = f"{format_count(count, 'file')}, {format_size(size)}"
+        files = f"{counted(count, 'file')}, {format_size(size)}"
         lines.append(f"- beside it, to be kept with it: {caches_folder(target).name}/ ({files})")
     if copy.packed:
         lines.append(f"- packed into it: {format_list(copy.packed, _LISTED)}")
@@ -132,7 +132,7 @@ def save(context: ToolContext, arguments: SaveArguments, call: Call) -> Result:
     lines += _file_lines(copy.external, copy.caches, faults)
     if opened and not faults:
         whole = ", every baked cache complete" if any(cache.baked for cache in opened.caches) else ""
-        lines.append(f"A second Blender opens it: {format_count(opened.objects, 'object')}{whole}.")
+        lines.append(f"A second Blender opens it: {counted(opened.objects, 'object')}{whole}.")
     lines.append(f"The scene is at {checkpoint}.")
     return Result("\n".join(lines), data, failed=bool(faults))
 
@@ -238,7 +238,7 @@ def _open(context: ToolContext, arguments: LoadArguments, name: str, call: Call)
         "path": str(blend_file.path),
         "checkpoint": checkpoint and checkpoint.number,
     }
-    objects = format_count(loaded.objects, "object")
+    objects = counted(loaded.objects, "object")
     lines = [f"Opened {blend_file.path}: {objects}, saved by Blender {loaded.version}."]
     if loaded.scripts:
         lines.append("- it has scripts or scripted drivers; they do not run")
@@ -263,7 +263,7 @@ def _file_lines(external: list[ExternalFile], caches: list[CacheReport], faults:
 def _cache(cache: CacheReport) -> str:
     first, last = cache.range
     state = f"{'baked' if cache.baked else 'not baked'}{', outdated' if cache.outdated else ''}"
-    where = f"{format_count(cache.frames, 'frame')} {'in the file' if cache.where == 'memory' else 'on disk'}"
+    where = f"{counted(cache.frames, 'frame')} {'in the file' if cache.where == 'memory' else 'on disk'}"
     return f"{cache.label}: {state}, frames {first}–{last}, {where}"
 
 

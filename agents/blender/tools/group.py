@@ -6,9 +6,10 @@ from typing import Any
 
 from pydantic import Field
 
-from agents.blender.formatting import format_count, format_list
+from agents.blender.formatting import format_list
 from agents.blender.tools.base import Arguments, BlenderTool, Call, CallContext, Result
 from agents.protocol.vocabulary import DeformationKind, MotionKind
+from simworlds.counting import counted
 
 _SECONDS = 120.0
 _MOST = 500
@@ -98,7 +99,7 @@ def _read(data: dict[str, Any]) -> Result:
 
 def _line(group: dict[str, Any]) -> str:
     place = ", ".join(f"{value:.4g}" for value in group["location"])
-    members = f"{format_count(len(group['members']), 'member')}: {_names(group['members'])}"
+    members = f"{counted(len(group['members']), 'member')}: {_names(group['members'])}"
     line = f"- {group['object']!r} in {_names(group['systems'])}: root {group['root']!r} at ({place}), {members}."
     if group["taken_out_of"]:
         line += f" Unlinked from {_names(group['taken_out_of'])}."

@@ -11,10 +11,11 @@ from agents.blender.exchange.comparison import describe_bounds
 from agents.blender.exchange.formats import describe_support, format_of
 from agents.blender.exchange.lending import check_there, lent_for_import
 from agents.blender.exchange.replies import AvailableFormats, ExchangeFacts, ImportedFile
-from agents.blender.formatting import format_count, format_list
+from agents.blender.formatting import format_list
 from agents.blender.readable_files import find_readable
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from agents.blender.tools.kept_scene import kept_scene
+from simworlds.counting import counted
 
 if TYPE_CHECKING:
     from agents.blender.supervisor import Supervisor
@@ -119,12 +120,12 @@ def describe_facts(facts: ExchangeFacts) -> list[str]:
     """What a set of objects is made of, in lines."""
     kinds = ", ".join(f"{number:,} {kind.lower()}" for kind, number in sorted(facts.objects.items()))
     lines = [f"- objects: {kinds or 'none'}; {facts.parented:,} with a parent"]
-    lines.append(f"- {format_count(facts.triangles, 'triangle')}, {format_count(facts.vertices, 'point')}")
+    lines.append(f"- {counted(facts.triangles, 'triangle')}, {counted(facts.vertices, 'point')}")
     if facts.low is not None:
         lines.append(f"- bounds: {describe_bounds(facts)}")
     if facts.animated:
         frames = f", frames {facts.range[0]}–{facts.range[1]}" if facts.range is not None else ""
-        lines.append(f"- animated: {format_count(facts.animated, 'object')}{frames}")
+        lines.append(f"- animated: {counted(facts.animated, 'object')}{frames}")
     for material in facts.materials[:_LISTED]:
         images = ", ".join(f"{image.into}: {image.file}" for image in material.images)
         lines.append(f"- material {material.name!r}: {images or 'no textures'}")

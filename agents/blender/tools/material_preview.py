@@ -8,13 +8,14 @@ from PIL import Image
 from pydantic import Field
 from pydantic.json_schema import SkipJsonSchema
 
-from agents.blender.formatting import format_count, format_list
+from agents.blender.formatting import format_list
 from agents.blender.render.kept_pictures import KeptPictures
 from agents.blender.sheets import contact_sheet
 from agents.blender.sheets.view_reply import LitObject, MaterialReply
 from agents.blender.sheets.worker_pictures import taken_picture
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
 from agents.blender.tools.preview_files import FOLDER, new_preview
+from simworlds.counting import counted
 from simworlds.sandbox.errors import Refusal
 from simworlds.sandbox.replies import Frame
 
@@ -148,12 +149,12 @@ def _text(shown: MaterialReply, data: dict[str, Any]) -> str:
     lines += [_line(one) for one in shown.objects]
     lines += [f"- {note}" for note in shown.notes]
     lines += (
-        [f"Rendered: {format_count(data['rendered'], 'still')} in {data['seconds']:.0f} s."]
+        [f"Rendered: {counted(data['rendered'], 'still')} in {data['seconds']:.0f} s."]
         if data["rendered"]
         else []
     )
     lines += (
-        [f"Shown as before, since nothing has changed: {format_count(data['kept'], 'still')}."]
+        [f"Shown as before, since nothing has changed: {counted(data['kept'], 'still')}."]
         if data["kept"]
         else []
     )

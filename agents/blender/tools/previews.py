@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Annotated
 from PIL import Image
 from pydantic import Field
 
-from agents.blender.formatting import format_count, format_list
+from agents.blender.formatting import format_list
 from agents.blender.sheets import contact_sheet
 from agents.blender.sheets.text_layout import format_length
 from agents.blender.sheets.view_reply import PreviewReply
 from agents.blender.sheets.worker_pictures import taken_picture
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from agents.blender.tools.preview_files import new_preview
+from simworlds.counting import counted
 
 if TYPE_CHECKING:
     from agents.blender.sheets.view_reply import DrawnView
@@ -154,7 +155,7 @@ def _sheet(kind: str, preview: PreviewReply, panels: list[contact_sheet.Panel]) 
     return contact_sheet.sheet(
         f"{kind.capitalize()}: {preview.title}",
         blocks,
-        subtitle=f"frame {preview.frame} · {_size_of(preview)} · {format_count(preview.objects, 'object')}",
+        subtitle=f"frame {preview.frame} · {_size_of(preview)} · {counted(preview.objects, 'object')}",
         remarks=[*_turned(preview), *_cut_away(preview)],
         notes=preview.notes,
     )
@@ -180,7 +181,7 @@ def _cut_away(preview: PreviewReply) -> list[str]:
 def _text(kind: str, preview: PreviewReply, file: str) -> str:
     low, high = (", ".join(f"{part:.4g}" for part in corner) for corner in (preview.low, preview.high))
     lines = [
-        f"{preview.title} ({kind}), frame {preview.frame}: {format_count(preview.objects, 'object')}, "
+        f"{preview.title} ({kind}), frame {preview.frame}: {counted(preview.objects, 'object')}, "
         f"{_size_of(preview)} (x × y × z), from ({low}) to ({high}).",
         *_turned(preview),
         *_cut_away(preview),

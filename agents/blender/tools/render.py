@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Field, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
-from agents.blender.formatting import format_count, format_list
+from agents.blender.formatting import format_list
 from agents.blender.render.frame_cache import FrameCache
 from agents.blender.render.frame_renderer import FrameRenderer
 from agents.blender.render.image_checks import LARGEST_STILL, RenderedPicture, image_faults, look_at
@@ -16,6 +16,7 @@ from agents.blender.render.picture_numbers import format_subjects
 from agents.blender.render.render_budget import RenderBudget
 from agents.blender.render.render_loop import RenderOutcome, StillStore, render_frames
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
+from simworlds.counting import counted
 from simworlds.sandbox.errors import BlenderError, Refusal
 
 if TYPE_CHECKING:
@@ -240,16 +241,16 @@ def _text(renderer: FrameRenderer, data: dict[str, Any], outcome: RenderOutcome)
     samples, wanted = data["samples"], data["samples_asked"]
     parts = [f"{data['width']}×{data['height']}", _engine(data)]
     if samples is not None:
-        parts.append(format_count(samples, "sample") + (", denoised" if data["denoise"] else ""))
+        parts.append(counted(samples, "sample") + (", denoised" if data["denoise"] else ""))
     how = f"camera {data['camera']!r}, {', '.join(parts)}"
     if data["kind"] == "still":
         lines = [f"Rendered frame {data['frame']} ({how}) in {data['seconds']:.1f} s: {data['path']}"]
     else:
         lines = _animation_lines(data, outcome, how)
     if samples is not None and samples < wanted:
-        lines.append(f"- To keep the time budget: {format_count(samples, 'sample')} instead of {wanted}.")
+        lines.append(f"- To keep the time budget: {counted(samples, 'sample')} instead of {wanted}.")
     if outcome.dropped:
-        count = format_count(len(outcome.dropped), "frame")
+        count = counted(len(outcome.dropped), "frame")
         lines.append(f"- To keep the time budget, {count} left out: {_format_frames(outcome.dropped)}.")
     if data["unbaked"]:
         lines.append(f"- Not baked, so stepped from the first frame: {format_list(data['unbaked'], _NAMED)}.")
@@ -271,13 +272,11 @@ def _animation_lines(data: dict[str, Any], outcome: RenderOutcome, how: str) -> 
         why = outcome.stopped.rstrip(".")
         lines.append(f"**Not finished**: {why}. Call again with the same arguments to continue.")
     each = f", {data['seconds_per_frame']} s a frame" if outcome.made else ""
-    lines.append(
-        f"{format_count(len(outcome.made), 'frame')} rendered in {data['seconds']:.1f} s{each} ({how})."
-    )
+    lines.append(f"{counted(len(outcome.made), 'frame')} rendered in {data['seconds']:.1f} s{each} ({how}).")
     if outcome.kept:
-        lines.append(f"- Kept from before: {format_count(len(outcome.kept), 'frame')}.")
+        lines.append(f"- Kept from before: {counted(len(outcome.kept), 'frame')}.")
     if discarded := data["discarded"]:
-        count = format_count(discarded["frames"], "frame")
+        count = counted(discarded["frames"], "frame")
         lines.append(f"- Removed {count} of an earlier state: {discarded['why']}.")
     if outcome.missing:
         lines.append(f"- Missing: {_format_frames(outcome.missing)}.")

@@ -6,9 +6,9 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from agents.blender.formatting import format_count
 from agents.blender.tools.scene_fold import series
 from agents.blender.tools.scene_order import bears_words, materials_of
+from simworlds.counting import counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -130,7 +130,7 @@ def _rest_of_objects(facts: Mapping[str, Any], wanted: Collection[str]) -> list[
         ]
         if count := len(own) + sum(left for _, left in below):
             named = _as_far_as_room([*own, *(name for name, _ in below)])
-            lines.append(f"- {branch[0]['name']}: {format_count(count, 'object')}: {named}")
+            lines.append(f"- {branch[0]['name']}: {counted(count, 'object')}: {named}")
     if len(lines) > _MOST_LINES:
         left = len(lines) - _MOST_LINES
         lines[_MOST_LINES:] = [f"- … and {left} collections more"]
@@ -144,7 +144,7 @@ def _other_lines(others: Mapping[str, Sequence[Entry]]) -> list[str]:
         if not entries:
             continue
         if name == "materials":
-            lines.append(f"- {format_count(len(entries), 'material')}")
+            lines.append(f"- {counted(len(entries), 'material')}")
         elif name == "physics":
             lines.append(
                 f"- physics: {_as_far_as_room([' '.join((one['kind'], one['name'])) for one in entries])}"
@@ -155,7 +155,7 @@ def _other_lines(others: Mapping[str, Sequence[Entry]]) -> list[str]:
             )
         else:
             kinds = Counter(one["kind"] for one in entries)
-            lines.append("- " + ", ".join(format_count(count, kind) for kind, count in kinds.items()))
+            lines.append("- " + ", ".join(counted(count, kind) for kind, count in kinds.items()))
     return lines
 
 

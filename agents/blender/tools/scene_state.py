@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, cast
 from pydantic import Field
 from pydantic.json_schema import SkipJsonSchema
 
-from agents.blender.formatting import format_count
 from agents.blender.tools import scene_dynamics as dynamics
 from agents.blender.tools import scene_words as words
 from agents.blender.tools.base import Arguments, BlenderTool, Call, CallContext, Result
@@ -17,6 +16,7 @@ from agents.blender.tools.scene_fit import ReadoutItem, ReadoutSection, share_to
 from agents.blender.tools.scene_focus import narrowed
 from agents.blender.tools.scene_fold import fold, fold_tree, series
 from agents.blender.tools.scene_order import asked_first, keep_parts
+from simworlds.counting import counted
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -149,7 +149,7 @@ def readout(facts: dict[str, Any], arguments: SceneStateArguments) -> Result:
 def _rest_text(rest: FocusRest) -> str:
     """What a readout with a focus leaves out."""
     return "\n".join(
-        [f"## The rest ({format_count(rest.count, 'object')}): {_REST_CALL} shows more of it", *rest.lines]
+        [f"## The rest ({counted(rest.count, 'object')}): {_REST_CALL} shows more of it", *rest.lines]
     )
 
 

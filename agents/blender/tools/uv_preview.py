@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Annotated
 from PIL import Image
 from pydantic import Field
 
-from agents.blender.formatting import format_count, format_list
+from agents.blender.formatting import format_list
 from agents.blender.sheets import contact_sheet
 from agents.blender.sheets.view_reply import UvMesh, UvReply
 from agents.blender.sheets.worker_pictures import taken_picture
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from agents.blender.tools.preview_files import new_preview
+from simworlds.counting import counted
 
 if TYPE_CHECKING:
     from agents.blender.supervisor import Supervisor
@@ -93,7 +94,7 @@ def _text(shown: UvReply) -> str:
 
 def _line(mesh: UvMesh) -> str:
     also = f" (also {format_list(mesh.alike, _NAMED)})" if mesh.alike else ""
-    head = f"- {mesh.name}{also}, {format_count(mesh.faces, 'face')}"
+    head = f"- {mesh.name}{also}, {counted(mesh.faces, 'face')}"
     if mesh.missing:
         return f"{head}: **its map has no usable coordinates**"
     low, high = mesh.scale

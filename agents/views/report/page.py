@@ -20,6 +20,7 @@ from agents.loop.run_state import ModelCall, Step, ToolCall
 from agents.plan.part import STAGES
 from agents.protocol.report.grouping import group_findings
 from agents.protocol.rules.catalogue import RULES
+from agents.roles.names import ROLES
 from agents.views import formatting
 from agents.views.cost_table import KINDS, costs_by_role
 from agents.views.report import code
@@ -41,7 +42,6 @@ if TYPE_CHECKING:
 
 NAME = "report.html"
 _FOLDER = Path(__file__).parent / "templates"
-_ROLES = ("planner", "coder", "reviewer", "final_reviewer")
 _RULE_NAMES = {rule.id: rule.name for rule in RULES}
 _ABOUT = 60  # letters
 _PLAIN_STOPS = ("end_turn", "tool_use", "stop_sequence")
@@ -136,7 +136,7 @@ def _render_page(run_state: RunState, run: Path, media: Media) -> str:
         costs=_costs(run_state),
         kinds=KINDS,
         by_kind=costs_by_role(run_state),
-        roles=_ROLES,
+        roles=ROLES,
         counted=formatting.counted,
         categories=CATEGORIES,
         rule_names=_RULE_NAMES,
@@ -328,7 +328,7 @@ def _costs(run_state: RunState) -> list[dict[str, Any]]:
     return [
         {
             "title": formatting.stage_title(name) if name else "Scene plan",
-            "roles": [by_key.get((role, name)) for role in _ROLES],
+            "roles": [by_key.get((role, name)) for role in ROLES],
             "total": sum((row for row in run_state.spending if row.stage == name), Spent("", name)),
             "seconds": stage.seconds if (stage := run_state.stage(name)) else run_state.planning or None,
         }

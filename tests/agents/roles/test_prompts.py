@@ -29,7 +29,8 @@ from agents.protocol.rules_by_stage import rules_of
 from agents.protocol.tolerances import TOLERANCES
 from agents.roles import coder, prompts
 from agents.roles.coder import is_needed, is_seen
-from agents.roles.prompts import FOLDER, ROLES, Role, protocol_text, system_prompt, team_text
+from agents.roles.names import ROLES, Role
+from agents.roles.prompts import FOLDER, protocol_text, system_prompt, team_text
 from agents.roles.sheets import SOLVERS, sheet
 from kb_serve.tool import tool as docs_tool
 from simworlds.llm.tokens import of_text

@@ -16,7 +16,8 @@ from agents.plan.edit import EditedActor
 from agents.plan.part import STAGES
 from agents.plan.scene import ScenePlan
 from agents.protocol.tolerances import TOLERANCES
-from agents.roles.prompts import ROLES, system_prompt
+from agents.roles.names import ROLES
+from agents.roles.prompts import system_prompt
 from agents.roles.sheets import SOLVERS, sheet, solvers_of
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import Field
 
 from agents.blender.attached.tools.view import read_state
-from agents.blender.formatting import format_count
 from agents.blender.tools.base import Arguments, Call, Result
+from simworlds.counting import counted
 from simworlds.sandbox.errors import Refusal
 from simworlds.sandbox.replies import Claim, Count, Frame
 
@@ -74,6 +74,6 @@ def run(context: AttachedContext, arguments: ShowArguments, call: Call) -> Resul
         ).value
         data = rings.model_dump()
         lines.append(
-            f"Drew {format_count(rings.rings, 'ring')}." if rings.rings else f"Removed {rings.removed} rings."
+            f"Drew {counted(rings.rings, 'ring')}." if rings.rings else f"Removed {rings.removed} rings."
         )
     return Result("\n".join(lines), data)
