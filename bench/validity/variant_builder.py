@@ -12,7 +12,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from bench.audit.actors import find_actors
 from bench.audit.audit import audit, audit_of, audit_scene, read_scene
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from bench.audit.facts import Scene
     from bench.scenes.spec import Spec
 
+_Result = TypeVar("_Result")
 _VALIDITY = Path(__file__).parent
 _PROGRAM = Program(
     "bench.validity.inside.variant_builder",
@@ -88,10 +89,13 @@ class VariantBuilder:
         Returns the file and the job's answer. Raises NotScored where it refuses or crashes, CannotStart.
         """
         path = self.folder / f"{name}.blend"
-        blender = self._worker.opened(self.original)
-        answer = blender.ask(job, doing=f"running {job}", **arguments)
-        blender.ask("save", doing="saving", path=str(path))
-        return path, answer
+
+        def work(blender: UntrustedBlend) -> Any:
+            answer = blender.ask(job, doing=f"running {job}", **arguments)
+            blender.ask("save", doing="saving", path=str(path))
+            return answer
+
+        return path, self._worker.run(self.original, work)
 
     def render(self, path: Path, *, cycles: bool, seed: int = 0) -> None:
         """Renders start, middle and end of a variant, beside it: its name with -0, -1, -2.png.
@@ -120,14 +124,13 @@ class VariantBuilder:
 
     def read(self, path: Path) -> SceneReading:
         """Reads a variant without relations. Raises NotScored, CannotStart."""
-        scene = read_scene(self._auditor.opened(path), play=True)
+        scene = self._auditor.run(path, lambda file: read_scene(file, play=True))
         found = find_actors(self.spec, scene)
         return SceneReading(scene, found, audit_scene(self.spec, scene, found))
 
     def audit(self, path: Path) -> Audit:
         """Audits a variant in the Blender that has read the others. Raises NotScored, CannotStart."""
-        file = self._auditor.opened(path)
-        return audit_of(file, read_scene(file, play=True), self.spec)
+        return self._auditor.run(path, lambda file: audit_of(file, read_scene(file, play=True), self.spec))
 
     def audit_alone(self, path: Path) -> Audit:
         """Audits a variant in a new Blender."""
@@ -140,6 +143,19 @@ class _ReusedBlender:
     def __init__(self, start: Callable[[Path], UntrustedBlend]) -> None:
         self._start, self._stack = start, ExitStack()
         self._file: UntrustedBlend | None = None
+
+    def run(self, path: Path, work: Callable[[UntrustedBlend], _Result]) -> _Result:
+        """Works on the file. Where a Blender crashes that had another file before, a new one works on it once more: the
+        simulations that it held may have hurt it. Raises NotScored.
+        """
+        is_new = self._file is None
+        try:
+            return work(self.opened(path))
+        except Crashed:
+            if is_new:
+                raise
+            self.close()
+            return work(self.opened(path))
 
     def opened(self, path: Path) -> UntrustedBlend:
         """Opens the file in the running Blender, or in a new one after a crash. Raises NotScored."""

@@ -292,3 +292,24 @@ def test_restarts_a_blender_that_crashed(room: VariantBuilder) -> None:
     assert room.make("again", "mutate", change="hide_in_render", objects=["Floor"], options={})[1] == [
         "Floor"
     ]
+
+
+def test_only_a_blender_that_had_other_files_is_asked_again(room: VariantBuilder) -> None:
+    def ends(blender: Any) -> str:
+        asked.append("ended")
+        os.kill(blender._process.inner, signal.SIGKILL)
+        while blender._process.alive:
+            time.sleep(0.01)
+        return blender.ask("save", doing="saving", path=str(room.folder / "dead.blend"))
+
+    def ends_once(blender: Any) -> str:
+        return "made" if asked else ends(blender)
+
+    asked: list[str] = []
+    room._worker.opened(room.original)
+    assert room._worker.run(room.original, ends_once) == "made"
+    room._worker.close()
+    asked.clear()
+    with pytest.raises(Crashed):
+        room._worker.run(room.original, ends)
+    assert asked == ["ended"]
