@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 from pydantic import Field
 
 from agents.blender.assets.poly_haven import CREDIT, Kind, Resolution
-from agents.blender.formatting import counted, format_size
+from agents.blender.formatting import format_size
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
+from simworlds.counting import counted
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
