@@ -277,7 +277,7 @@ def breaches_inside(graph: Graph) -> Iterator[str]:
 
 
 def breaches_between_roles(graph: Graph) -> Iterator[str]:
-    shared = ("agents.roles.base", "agents.roles.prompts", "agents.roles.sheets")
+    shared = ("agents.roles.base", "agents.roles.names", "agents.roles.prompts", "agents.roles.sheets")
     for module, named in graph.items():
         if not module.startswith("agents.roles."):
             continue
