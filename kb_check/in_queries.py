@@ -51,11 +51,9 @@ _NEVER_TRUE = "never-true"  # a warning, as Blender refuses nothing
 _NO_VALUE = "unknown-value"
 _IS_NONE = re.compile(NO_VALUE)  # what is said of a value that no Blender has
 _ARGUMENT = "("  # in the path of an argument: of the values of properties an answer tells by itself
-_GONE = "unknown-attribute"  # what is wrong behind a name that is gone, its successor may take otherwise
-_NAMES = (
-    _GONE,
-    "unknown-operator",
-)  # of which an answer tells but where they are texts: ``layout.prop(ob, "locaton")``
+# Of these an answer tells but where they are texts: ``layout.prop(ob, "locaton")``. What is wrong behind a name that is
+# gone, its successor may take otherwise.
+_NAMES = ("unknown-attribute", "unknown-operator")
 _KEYWORD = "unknown-keyword"
 _GONE_NAMES = ("unknown-context-member", _KEYWORD, "unknown-name", "unknown-socket")
 _ANIMATED = re.compile(r"\.(?:keyframe|driver)_\w+\(")  # of their paths an answer tells, too

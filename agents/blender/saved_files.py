@@ -162,9 +162,8 @@ def move_saved(made: Path, target: Path) -> None:
     The caches of the file that was there before go, whether or not the new one has any. Raises OSError.
     """
     target.parent.mkdir(exist_ok=True)
-    begun = made.with_name(
-        f"{made.name}.begun"
-    )  # where this is, the caches beside the target may be the new ones
+    # Where this is, the caches beside the target may be the new ones.
+    begun = made.with_name(f"{made.name}.begun")
     if caches_folder(made).is_dir():
         begun.touch()
         shutil.rmtree(caches_folder(target), ignore_errors=True)

@@ -24,6 +24,8 @@ def explain_properties(
     chains: Iterable[Chain], recognition: Recognition, removed: RemovedSymbolLookup, reader: BaseReader
 ) -> None:
     """Adds, in place of each name that an operator lacks, what became of that argument, or which is meant."""
+    if not any(missing.owner.startswith(OPERATORS) for missing in recognition.missing):
+        return
     values = {
         chain.attributes[-1]: repr(chain.values[0]) for chain in chains if chain.attributes and chain.values
     }

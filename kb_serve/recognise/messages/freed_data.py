@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.api_names import STRUCT, TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.messages.guides import ON_FREED, add_guide
 
@@ -22,7 +22,6 @@ _NOT_MADE = (
     "and each attribute of Blender's says that it was removed."
 )
 _PASSING = "DepsgraphObjectInstance"
-_INSTANCES = f"{TYPES}bpy_struct"
 _PASSED = (
     "Such an instance is there only until the loop goes on: take what is needed inside the loop "
     "(`instance.matrix_world.copy()`, `instance.object.name`); `list(depsgraph.object_instances)` keeps none."
@@ -48,7 +47,7 @@ class FreedData:
                 continue
             if not match["module"] and self._reader.entry(TYPES + match["type"]) is None:
                 recognition.notes.append(_NOT_MADE.format(cls=match["type"]))
-                recognition.add(_INSTANCES, 0.95, "error message")
+                recognition.add(STRUCT, 0.95, "error message")
                 continue
             recognition.notes.append(_FREED_MESH if match["module"] else _FREED)
             add_guide(ON_FREED, self._reader, recognition)

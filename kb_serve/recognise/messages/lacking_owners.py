@@ -11,7 +11,7 @@ from kb_serve.recognise.messages.context_members import note_on_absent
 from kb_serve.recognise.names.corrections import is_misspelling
 from kb_serve.recognise.names.elements import elsewhere
 from kb_serve.recognise.names.members_within import members_within
-from kb_serve.recognise.names.operator_words import operator_of_class
+from kb_serve.recognise.names.operator_words import known_operator_of_class
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.recognition import MissingName
 
@@ -63,7 +63,7 @@ class LackingOwners:
         owner = (
             _INSTANCES.get(written)
             or self._symbols.class_path(written, or_module=of_module)
-            or self._operator(written)
+            or known_operator_of_class(written, self._reader)
         )
         module = self._reader.entry(f"{owner}.{name}") if owner else None
         if module and module.kind == "module":
@@ -120,11 +120,6 @@ class LackingOwners:
         recognition.add(_PROPERTIES, 0.95, "error message")
         recognition.add(_OPERATOR, 0.9, "error message")
         recognition.notes.append(_OWN_CLASS.format(cls=written, name=name))
-
-    def _operator(self, written: str) -> str:
-        """The path of the operator whose properties are of a class, ``WM_OT_call_menu``; empty for none."""
-        path = operator_of_class(written)
-        return path if path and self._reader.entry(path) else ""
 
     def _there(self, member: SymbolEntry, recognition: Recognition) -> None:
         """A member that its class has, whatever the message says: of the context it is not there everywhere."""

@@ -12,6 +12,7 @@ from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.code.contexts import NO_OVERRIDE, OVERRIDE, context_for, keywords_given
 from kb_serve.recognise.messages.guides import ON_OPERATORS, add_guide
 from kb_serve.recognise.names.corrections import nearest
+from kb_serve.recognise.names.operator_words import known_operator_of_class
 
 if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol
@@ -65,10 +66,9 @@ class Operators:
                 recognition.add(OVERRIDE, 0.82, "error message")
         for match in forms.first_matches(forms.WRONG_TYPE, query):
             if match["operator"]:
-                module, _, name = match["operator"].partition("_OT_")
-                entry = self._reader.entry(f"{OPERATORS}{module.lower()}.{name}")
                 own = _DEFINED.get(match["wanted"], "bpy.props")  # an operator of the script's own
-                recognition.add(entry.path if entry else own, 0.98, "error message")
+                path = known_operator_of_class(match["operator"], self._reader) or own
+                recognition.add(path, 0.98, "error message")
         if match := forms.NO_WRITING.search(query):
             recognition.notes.append(_READS_ONLY)
             if set_ := self._set(match["owner"] or "", match["name"] or ""):

@@ -31,6 +31,12 @@ def operator_of_class(name: str) -> str:
     return f"{OPERATORS}{module.lower()}.{own}" if mark else ""
 
 
+def known_operator_of_class(name: str, reader: BaseReader) -> str:
+    """The same of an operator that the base has; empty for others."""
+    path = operator_of_class(name)
+    return path if path and reader.entry(path) else ""
+
+
 class _Words(NamedTuple):
     """The stems of an operator's words and of its module's."""
 

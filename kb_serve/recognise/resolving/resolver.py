@@ -14,7 +14,7 @@ from kb_build.symbols.paths import is_socket
 from kb_build.symbols.python_values import METHODS, python_class
 from kb_serve.recognise.code.refusals import is_listed, refuses, refuses_call
 from kb_serve.recognise.names.holders import by_what_holds_it
-from kb_serve.recognise.names.operator_words import operator_of_class
+from kb_serve.recognise.names.operator_words import known_operator_of_class
 from kb_serve.recognise.resolving.chain_starts import ChainStarts
 from kb_serve.recognise.resolving.chain_values import ChainValue, ChainValues
 from kb_serve.recognise.resolving.chains import ChainStep
@@ -240,7 +240,7 @@ class Resolver:
             yield value
             return
         if value.cls.startswith(OPERATORS) and self._has_parameter(value.cls, name):
-            yield ChainValue(value.cls, self._part_of_macro(name))
+            yield ChainValue(value.cls, known_operator_of_class(name, self._reader))
             return
         own = (
             self._reader.member_of(value.cls, name)
@@ -280,11 +280,6 @@ class Resolver:
     def _has_parameter(self, path: str, name: str) -> bool:
         symbol = self._reader.symbol(path)
         return symbol is not None and any(parameter.name == name for parameter in symbol.parameters)
-
-    def _part_of_macro(self, name: str) -> str:
-        """The operator that a parameter of another one holds the properties of: ``MESH_OT_rip``; empty for others."""
-        path = operator_of_class(name)
-        return path if path and self._reader.entry(path) else ""
 
     def _of_collection(self, value: ChainValue, name: str) -> SymbolEntry | None:
         """A member of a collection: of its own class, of all collections, or of those of property groups."""
