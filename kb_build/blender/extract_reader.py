@@ -25,7 +25,7 @@ from kb_build.blender.manual_links import manual_links
 from kb_build.blender.owners_animated import unmark_unanimated
 from kb_build.blender.references import with_true_references
 from kb_build.blender.same_values import mark_same_values
-from kb_build.blender.tried_facts import ADDED, add_items
+from kb_build.blender.tried_facts import RECORDS, add_fact, add_items
 from kb_build.errors import ExtractError
 from kb_build.index.creation import with_whole_calls
 from kb_build.symbols.api_names import HANDLERS, TYPES
@@ -43,17 +43,16 @@ from kb_build.symbols.records import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping
     from pathlib import Path
 
     from kb_build.blender.docstrings import Docstring
 
 _SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
 _SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
-_OF_MODULE, _SELF = (
-    "of_module",
-    "(self",
-)  # how ``inside/modules.py`` marks functions of modules written in Python
+_ITEMS = "enum_items"  # the record of what instances listed
+# How ``inside/modules.py`` marks functions of modules written in Python.
+_OF_MODULE, _SELF = "of_module", "(self"
 _BOUND = re.compile(r"^\((?:self|cls)\b(?:, /)?(?:, )?")  # what a method gets from the dot before it
 _ROLE = re.compile(r":class:`~?([^`]+)`")  # which some of RNA's descriptions have
 _DOUBLE = re.compile(r"``([^`]+)``")
@@ -121,6 +120,17 @@ class _Raw:
     by_class: dict[str, dict[str, str]] = field(default_factory=lambda: defaultdict(dict))
 
 
+def _tell(raw: _Raw, record: str, seen: dict[str, Any]) -> None:
+    """Adds what was tried of a symbol to its row, if it has one."""
+    path = seen["path"]
+    if (row := raw.symbols.get(path)) is None:
+        return
+    if record == _ITEMS:
+        add_items(row, seen, raw.neighbours.get(path))
+    else:
+        add_fact(record, row, seen)
+
+
 def _keep(raw: _Raw, record: str, row: dict[str, Any]) -> None:
     """Adds one line of the extract."""
     match record:
@@ -132,12 +142,10 @@ def _keep(raw: _Raw, record: str, row: dict[str, Any]) -> None:
             raw.trees[row["path"]] = row["trees"]
         case "manual":
             raw.manual.append((row["pattern"], row["page"]))
-        case "enum_items":
-            add_items(raw.symbols.get(row["path"]), row, raw.neighbours.get(row["path"]))
         case "enum_neighbours":
             raw.neighbours[row["path"]] = row
-        case _ if record in ADDED:
-            ADDED[record](raw.symbols.get(row["path"]), row)
+        case _ if record == _ITEMS or record in RECORDS:
+            _tell(raw, record, row)
         case "own_name" | "stands_in":
             raw.by_class[record][row["path"].removeprefix(TYPES)] = row["name"]
         case "still_works":
@@ -357,37 +365,8 @@ def _name_active_items(symbols: dict[str, dict[str, Any]]) -> None:
 def read_extract(path: Path) -> Extract:
     """Reads the extractor's output. Raises ExtractError when it is not whole."""
     raw = _read(path)
-    for owner, trees in raw.trees.items():
-        if owner in raw.symbols:
-            raw.symbols[owner]["trees"] = trees
-    for holder, tree in _TREES.items():
-        if holder in raw.symbols and f"bpy.types.{tree}" in raw.symbols:
-            raw.symbols[holder]["target"] = tree
-    _name_active_items(raw.symbols)
-    name_classes(raw.symbols)
-    unmark_unanimated(raw.symbols)
-    mark_same_values(raw.symbols)
-    _substitute(raw.symbols.values())
-    described = [*_described_members(raw.symbols.values())]
-    symbols = {row_path: _symbol(row) for row_path, row in raw.symbols.items()}
-    for member in described:
-        symbols.setdefault(member.path, member)
-    for symbol in [*symbols.values()]:
-        if any("rna_enum_" in parameter.description + parameter.type for parameter in symbol.parameters):
-            symbols[symbol.path] = _with_shared_values(symbol, symbols)
-        elif any(_LISTED_BY_MODULE.fullmatch(parameter.description) for parameter in symbol.parameters):
-            symbols[symbol.path] = _with_values_of_module(symbol, symbols)
-    symbols = with_true_references(symbols)
-    prototypes = [
-        symbol
-        for name in ("bl_rna_get_subclass", "bl_rna_get_subclass_py")
-        if (symbol := symbols.get(f"bpy.types.bpy_struct.{name}"))
-    ]
-    classes = [
-        symbol for symbol in symbols.values() if symbol.kind == "class" and symbol.owner == "bpy.types"
-    ]
-    for extra in _subclass_lookups((cls for cls in classes if cls.group == "data"), prototypes):
-        symbols.setdefault(extra.path, extra)
+    _correct(raw)
+    symbols = _symbols_of(raw.symbols.values())
     minor = ".".join(raw.header["version"].split(".")[:2])
     return Extract(
         version=raw.header["version"],
@@ -403,3 +382,39 @@ def read_extract(path: Path) -> Extract:
         names=raw.by_class["own_name"],
         places=raw.by_class["stands_in"],
     )
+
+
+def _correct(raw: _Raw) -> None:
+    """Corrects rows by each other. That is done once all are read, and before any becomes a symbol."""
+    for owner, trees in raw.trees.items():
+        if owner in raw.symbols:
+            raw.symbols[owner]["trees"] = trees
+    for holder, tree in _TREES.items():
+        if holder in raw.symbols and f"bpy.types.{tree}" in raw.symbols:
+            raw.symbols[holder]["target"] = tree
+    _name_active_items(raw.symbols)
+    name_classes(raw.symbols)
+    unmark_unanimated(raw.symbols)
+    mark_same_values(raw.symbols)
+    _substitute(raw.symbols.values())
+
+
+def _symbols_of(rows: Collection[dict[str, Any]]) -> dict[str, Symbol]:
+    """The symbols of corrected rows, and those that only follow from them, by path."""
+    symbols = {row["path"]: _symbol(row) for row in rows}
+    # RNA knows better: what it has stays, whatever a docstring says of it.
+    for member in _described_members(rows):
+        symbols.setdefault(member.path, member)
+    for symbol in [*symbols.values()]:
+        if any("rna_enum_" in parameter.description + parameter.type for parameter in symbol.parameters):
+            symbols[symbol.path] = _with_shared_values(symbol, symbols)
+        elif any(_LISTED_BY_MODULE.fullmatch(parameter.description) for parameter in symbol.parameters):
+            symbols[symbol.path] = _with_values_of_module(symbol, symbols)
+    symbols = with_true_references(symbols)
+    lookups = ("bl_rna_get_subclass", "bl_rna_get_subclass_py")
+    prototypes = [one for name in lookups if (one := symbols.get(f"bpy.types.bpy_struct.{name}"))]
+    classes = (one for one in symbols.values() if one.kind == "class" and one.owner == "bpy.types")
+    # Last: they are copies of what is corrected above.
+    for extra in _subclass_lookups([cls for cls in classes if cls.group == "data"], prototypes):
+        symbols.setdefault(extra.path, extra)
+    return symbols

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kb_build.blender.tried_facts import ADDED
+from kb_build.blender.tried_facts import add_fact
 from kb_build.symbols.records import BARE_DATA, Deprecation, Symbol
 from kb_build.versions.disused import with_present_ways, without_effect
 from kb_build.versions.successors import load_successors
@@ -65,7 +65,7 @@ def test_what_blender_says_itself_stays() -> None:
 
 def test_an_operator_that_makes_what_is_to_come_names_the_one_of_today() -> None:
     row: dict[str, object] = {"flags": ["compared"]}
-    ADDED["bare_data"](row, {"path": "bpy.ops.object.grease_pencil_add"})
+    add_fact("bare_data", row, {"path": "bpy.ops.object.grease_pencil_add"})
     assert row["flags"] == ["compared", BARE_DATA]
     bare = Symbol("bpy.ops.object.grease_pencil_add", "operator", flags=("compared", BARE_DATA))
     today = Symbol("bpy.ops.object.gpencil_add", "operator")
