@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 from kb_build.errors import SourceError
-from simworlds.files import sha256_of_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -60,8 +59,8 @@ def download(
     patience: DownloadPatience,
     progress: Progress | None = None,
     kind: ArchiveKind = ZIP,
-) -> str:
-    """Fetch the archive at ``url`` into ``target``; returns its SHA-256, also written beside it.
+) -> None:
+    """Fetch the archive at ``url`` into ``target``.
 
     What has arrived stays in ``target``'s .part file when the transfer breaks off, and the next call goes on
     from there, provided the server still has the same file. Raises SourceError with address and fault.
@@ -83,24 +82,21 @@ def download(
                 raise SourceError(
                     f"{url} broke off after {_size(part):,} bytes ({error}); run again to go on from there"
                 ) from error
-    return _accept(url, part, target, kind)
+    _accept(url, part, target, kind)
 
 
 def _size(path: Path) -> int:
     return path.stat().st_size if path.exists() else 0
 
 
-def _accept(url: str, part: Path, target: Path, kind: ArchiveKind) -> str:
+def _accept(url: str, part: Path, target: Path, kind: ArchiveKind) -> None:
     if not kind.recognise(part):
         with part.open("rb") as file:
             start = file.read(40)
         part.unlink()
         raise SourceError(f"{url} is not a {kind.name} (it starts with {start!r})")
-    digest = sha256_of_file(part)
-    target.with_name(target.name + ".sha256").write_text(f"{digest}  {target.name}\n", encoding="ascii")
     part.replace(target)
     _validator_file(part).unlink(missing_ok=True)
-    return digest
 
 
 def _validator_file(part: Path) -> Path:

@@ -99,7 +99,6 @@ def _archive(place: str, minor: str, wanted: str, home: Path, progress: Progress
             yield archive
         finally:
             archive.unlink(missing_ok=True)
-            archive.with_name(archive.name + ".sha256").unlink(missing_ok=True)
 
 
 def _split(source: str) -> tuple[str, str]:

@@ -85,20 +85,15 @@ def reason(entry: DocumentationSource | MissingSource) -> str:
 def test_a_source_found_nowhere_else_is_downloaded_with_its_digest(tmp_path: Path, site: Site) -> None:
     found = look(tmp_path, site.url)
     manual, guides = source(found["manual"]), source(found["guides"])
-    digest = hashlib.sha256(MANUAL).hexdigest()
-    assert manual.sha256 == digest
+    assert manual.sha256 == hashlib.sha256(MANUAL).hexdigest()
     assert (manual.path / "cloth.html").is_file()
     assert [path.name for path in guides.path.glob("info_*")] == ["info_overview.html"]
     stored = sorted(path.name for path in (tmp_path / "cache" / "downloads").iterdir())
     assert stored == [
         ".lock",
         "blender_manual_v510_en.zip",
-        "blender_manual_v510_en.zip.sha256",
         "blender_python_reference_5_1.zip",
-        "blender_python_reference_5_1.zip.sha256",
     ]
-    note = (tmp_path / "cache" / "downloads" / "blender_manual_v510_en.zip.sha256").read_text()
-    assert note == f"{digest}  blender_manual_v510_en.zip\n"
 
 
 def test_downloads_are_not_requested_again(tmp_path: Path, site: Site) -> None:
@@ -363,10 +358,8 @@ def test_an_interrupt_keeps_what_has_arrived_for_the_next_run(tmp_path: Path, si
     with pytest.raises(KeyboardInterrupt):
         download(site.url + MANUAL_PATH, target, patience=DownloadPatience(seconds=60.0), progress=interrupt)
     assert not target.exists()
-    assert (
-        download(site.url + MANUAL_PATH, target, patience=DownloadPatience(seconds=60.0))
-        == hashlib.sha256(MANUAL).hexdigest()
-    )
+    download(site.url + MANUAL_PATH, target, patience=DownloadPatience(seconds=60.0))
+    assert target.read_bytes() == MANUAL
 
 
 def test_a_folder_of_downloads_that_cannot_be_written_to_is_named(tmp_path: Path, site: Site) -> None:
