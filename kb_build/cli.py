@@ -316,6 +316,9 @@ def diff_command(old: str, new: str, **given: Any) -> None:
     from kb_build.versions.diff import diff, format_diff, is_under  # noqa: PLC0415 - only here
     from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
+    as_json = given["as_json"]
+    if as_json and given["limit"]:
+        raise click.UsageError("--limit shortens what is shown; --json gives all. Leave out one of them.")
     unwind_on_termination()
     with shown_progress() as progress:
         extracts = _ask(old, progress), _ask(new, progress)
@@ -326,7 +329,6 @@ def diff_command(old: str, new: str, **given: Any) -> None:
                 f"neither Blender {differences.old} nor {differences.new} has {prefix}. Write it as bpy.types.Mesh"
             )
         differences = differences.under(prefix)
-    as_json = given["as_json"]
     click.echo(
         json.dumps(differences.to_json(), indent=2)
         if as_json

@@ -8,5 +8,10 @@ import errno
 NO_ROOM = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 
 
+def remedy(error: OSError) -> str:
+    """What to do where nothing could be written, as the beginning of a sentence."""
+    return "Make room there" if error.errno in NO_ROOM else "Make the folder writable"
+
+
 class UserError(Exception):
     """Base of all of them. The message says what was wrong, where, and what to do."""

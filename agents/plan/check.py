@@ -20,13 +20,14 @@ from agents.plan.scene import PlannedObject, ScenePlan
 from agents.plan.validation_messages import faults_from, format_path, near
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from agents.plan.motion import MotionPhase
 
 MAX_CHARACTERS = 2_000_000
 _MOST_ENTRIES = 1000  # of one list
 _DEEPEST = 6  # steps; all lists of a plan lie above
+_MOST_NAMED = 6  # of a cycle
 _MOVED = frozenset({"rigid", "cloth", "soft", "fluid", "emitter", "rig", "keyframed"})
 
 
@@ -237,6 +238,7 @@ def _phase_faults(plan: ScenePlan) -> Iterator[Fault]:
                 f"{phase.actor!r} moves, but its role {roles[phase.actor]!r} does not; choose one of "
                 f"{', '.join(sorted(_MOVED))}.",
             )
+    yield from _cycle_faults(plan.motion.phases, by_name)
     yield from _overlaps(plan.motion.phases)
 
 
@@ -266,6 +268,28 @@ def _cause_faults(path: str, phase: MotionPhase, by_name: dict[str, MotionPhase]
         yield Fault(
             f"{path}.cause",
             f"The cause {cause.name!r} starts at frame {cause.start}, after its effect at frame {phase.start}.",
+        )
+
+
+def _cycle_faults(phases: Sequence[MotionPhase], by_name: Mapping[str, MotionPhase]) -> Iterator[Fault]:
+    """Each cycle of phases that cause one another, at the one of them that the plan names first."""
+    walks: dict[str, int] = {}  # phase → the walk along causes that came to it
+    for place, first in enumerate(phases):
+        here = by_name.get(first.name)
+        while here is not None and here.name not in walks:
+            walks[here.name] = place
+            here = by_name.get(here.cause or "")
+        if here is None or walks[here.name] != place or here.cause == here.name:
+            continue
+        cycle = [here.name]
+        while (cause := by_name[cycle[-1]].cause) and cause != here.name:
+            cycle.append(cause)
+        named = cycle if len(cycle) <= _MOST_NAMED else [*cycle[: _MOST_NAMED - 1], "…"]
+        names = " → ".join((*named, here.name))
+        yield Fault(
+            f"motion.phases[{place}].cause",
+            f"Its cause closes a cycle, each phase caused by the next: {names}. Leave out the cause of the one "
+            "that begins.",
         )
 
 

@@ -17,7 +17,7 @@ from kb_build.digests import Digests
 from kb_build.errors import ExtractError
 from kb_build.fingerprint import extractor_digest, runtime_digest
 from kb_build.versions.history import ApiHistory
-from simworlds.errors import NO_ROOM
+from simworlds.errors import remedy
 from simworlds.files import remove_unfinished_files, staged_file
 from simworlds.releases import minor_of
 from simworlds.sandbox.errors import ProgramFailed
@@ -62,15 +62,11 @@ def extract_api(runtime: Runtime, *, home: Path, again: bool = False, progress: 
             _run(runtime, part, folder / f"blender-{runtime.version}.log")
     except OSError as error:
         raise ExtractError(
-            f"{target} cannot be written: {error.strerror or error}. {_remedy(error)}, or set SIMWORLDS_HOME to "
+            f"{target} cannot be written: {error.strerror or error}. {remedy(error)}, or set SIMWORLDS_HOME to "
             "another folder"
         ) from error
     _remove_older(target, minor_of(runtime.version))
     return target
-
-
-def _remedy(error: OSError) -> str:
-    return "Make room there" if error.errno in NO_ROOM else "Make the folder writable"
 
 
 def _has_moved(extract: Path) -> bool:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 from kb_build.errors import SourceError
+from simworlds.errors import remedy
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -161,7 +162,7 @@ class _Transfer:
         except httpx2.RequestError as error:
             self.events.put(_BrokeOffError(str(error) or type(error).__name__))
         except OSError as error:
-            self._fail(f"could not be stored in {self.part.parent} ({error}); make room there", error)
+            self._fail(f"could not be stored in {self.part.parent} ({error}). {remedy(error)}", error)
         except Exception as error:  # a thread's fault must not be lost: the caller waits for it
             self._fail(f"could not be fetched ({error})", error)
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from kb_build.errors import SourceError
 from kb_build.fingerprint import reader_digest
 from kb_build.symbols.records import page_from_json, to_json
+from simworlds.errors import remedy
 from simworlds.files import remove_unfinished_files, staged_file
 
 if TYPE_CHECKING:
@@ -76,8 +77,8 @@ def _keep(pages: list[Page], path: Path) -> None:
                 file.write(json.dumps(to_json(page), ensure_ascii=False) + "\n")
     except OSError as error:
         raise SourceError(
-            f"the pages of {path.name} cannot be kept in {path.parent}: {error}; make room there, or set "
-            "SIMWORLDS_HOME"
+            f"the pages of {path.name} cannot be kept in {path.parent}: {error}. {remedy(error)}, or set "
+            "SIMWORLDS_HOME to another folder"
         ) from error
     with suppress(OSError):  # another build may be removing them, too
         for old in sorted(path.parent.glob("*.jsonl.gz"), key=lambda one: one.stat().st_mtime)[:-_KEPT]:

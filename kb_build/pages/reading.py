@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.errors import SourceError
 from kb_build.pages.page_cache import kept_pages, read_pages
-from simworlds.errors import UserError
+from simworlds.errors import UserError, remedy
 from simworlds.files import remove_leftovers, scratch_folder
 from simworlds.forked import can_fork, forked
 
@@ -72,7 +72,7 @@ class PageReader:
             return self._cleanup.enter_context(scratch_folder(self._cache / "scratch"))
         except OSError as error:
             raise SourceError(
-                f"{self._cache} cannot be written: {error}; make room there, or set SIMWORLDS_HOME"
+                f"{self._cache} cannot be written: {error}. {remedy(error)}, or set SIMWORLDS_HOME to another folder"
             ) from error
 
     def result(self) -> dict[str, list[Page]]:

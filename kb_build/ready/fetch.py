@@ -23,6 +23,7 @@ from kb_build.ready.export import ready_name
 from kb_build.ready.manifest import BASE, LARGEST_BASE, MANIFEST, MEMBERS, SUFFIX, Manifest, read_manifest
 from kb_build.schema import DDL, INDEXES, NoBase, open_read_only
 from kb_build.verify import verify_base
+from simworlds.errors import remedy
 from simworlds.files import scratch_folder, sha256_of_file
 from simworlds.folder_lock import locked
 from simworlds.loopback import is_loopback
@@ -81,7 +82,7 @@ def fetch_base(version: str, source: str, *, home: Path, progress: Progress = si
         raise ReadyBaseError(f"No base was fetched: {error}") from error
     except OSError as error:
         raise ReadyBaseError(
-            f"No base was fetched: {error}. Make room there, or set SIMWORLDS_HOME to another folder"
+            f"No base was fetched: {error}. {remedy(error)}, or set SIMWORLDS_HOME to another folder"
         ) from error
 
 

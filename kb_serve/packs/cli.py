@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from simworlds.errors import UserError
+from simworlds.errors import UserError, remedy
 from simworlds.terminal.output_file import OutputFile
 
 if TYPE_CHECKING:
@@ -50,6 +50,11 @@ def pack(version: str | None, budget: int, topic: str, output: Path | None) -> N
         else:
             write_whole(output, text)
             click.echo(f"{output}: {len(text.encode()):,} bytes, at most {budget:,} tokens.", err=True)
-    except (UserError, OSError) as error:
+    except OSError as error:
+        click.echo(
+            f"Error: {output} cannot be written: {error}. {remedy(error)}, or name another file", err=True
+        )
+        sys.exit(_ERROR)
+    except UserError as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)

@@ -243,6 +243,7 @@ def test_two_blenders_are_compared(small: Built) -> None:
         (("kb", "pack", "--output", "/nowhere/x.md"), "There is no folder /nowhere."),
         (("kb", "merge-summaries", "/nowhere"), "does not exist"),
         (("kb", "merge-summaries", "/etc/passwd"), "/etc/passwd cannot be read as a colleague's summaries"),
+        (("kb", "diff", "4.2", "5.1", "--json", "--limit", "3"), "--limit shortens what is shown"),
         (("kb", "diff", "nonsense", "5.1"), "'nonsense' is not a Blender version"),
     ],
 )

@@ -271,8 +271,8 @@ class AttachedBlender:
     ) -> _OpenAnswer:
         """The answer to a call. Raises Refusal."""
         end = self._connected()
-        ticket = secrets.token_hex(8)
-        deadline = time.monotonic() + timeout + (_STOP_SECONDS if stops else _GRACE_SECONDS)
+        ticket, begun = secrets.token_hex(8), time.monotonic()
+        deadline = begun + timeout + (_STOP_SECONDS if stops else _GRACE_SECONDS)
         try:
             end.timeout(_SEND_SECONDS)
             end.send({"ticket": ticket, "tool": tool, "arguments": arguments, "seconds": timeout})
@@ -288,7 +288,7 @@ class AttachedBlender:
                     or self._ending.is_set()
                     or (cancelled is not None and cancelled.is_set())
                 ):
-                    return self._give_up(end, ticket, what, timeout, cancelled)
+                    return self._give_up(end, ticket, what, time.monotonic() - begun, cancelled)
                 try:
                     message = end.receive()
                 except TimeoutError:
@@ -315,14 +315,14 @@ class AttachedBlender:
             ) from error
 
     def _give_up(
-        self, end: Any, ticket: str, what: str, timeout: float, cancelled: threading.Event | None
+        self, end: Any, ticket: str, what: str, waited: float, cancelled: threading.Event | None
     ) -> _OpenAnswer:
         end.timeout(_SEND_SECONDS)
         end.send({"withdraw": ticket})
         if cancelled is not None and cancelled.is_set():
             raise Refusal(f"{what} was cancelled. If it had begun, it goes on to its end as one undo step.")
         raise Refusal(
-            f"The open Blender has not answered {what} in {timeout + _GRACE_SECONDS:g} s. It was withdrawn; if it had "
+            f"The open Blender has not answered {what} in {waited:.0f} s. It was withdrawn; if it had "
             "begun, it goes on to its end as one undo step. Ask the user whether Blender responds, and read the state."
         )
 

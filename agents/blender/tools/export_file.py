@@ -78,9 +78,8 @@ def run(context: ToolContext, arguments: ExportArguments, call: Call) -> Result:
         back = None
         if arguments.verify:
             back = _import_again(blender.launch, main, known, sent, timeout=arguments.timeout)
-        size = (
-            sum(path.stat().st_size for path in staged.rglob("*")) if place.in_folder else main.stat().st_size
-        )
+        files = [path for path in staged.rglob("*") if path.is_file()] if place.in_folder else [main]
+        size = sum(path.stat().st_size for path in files)
         _put_in_place(staged, place.target, folder / "before@")  # no name of an export
     path = place.target / place.main if place.in_folder else place.target
     differs = differences(sent, back, known) if isinstance(back, ImportedFile) else []

@@ -104,6 +104,25 @@ def test_a_plan_comes_back_from_its_json_as_it_was() -> None:
     assert read_plan(plan.model_dump_json())[0] == plan
 
 
+def test_causes_that_go_round_are_a_fault_once() -> None:
+    plan = a_plan()
+    fall = {"actor": "Ball", "kind": "fall", "start": 1, "end": 20, "extent": 0.7}
+    turn = {"kind": "rotate", "start": 1, "end": 20, "turn": 90}
+    others = [
+        {**turn, "name": name, "actor": f"Chair {place}", "cause": cause}
+        for place, (name, cause) in enumerate([("b", "c"), ("c", "b"), ("d", "b")])
+    ]
+    plan["objects"] = [
+        {**planned, "role": "keyframed"} if planned["name"].startswith("Chair") else planned
+        for planned in plan["objects"]
+    ]
+    plan["motion"]["phases"] = [{**fall, "name": "a"}, *others]
+    cycles = [text for text in fault_texts(plan) if "cycle" in text]
+    assert len(cycles) == 1
+    assert cycles[0].startswith("motion.phases[1].cause")
+    assert "b → c → b" in cycles[0]
+
+
 def changed(path: str, value: Any) -> dict[str, Any]:
     """The sound plan with one field replaced; ``path`` as in a fault."""
     plan = copy.deepcopy(a_plan())
