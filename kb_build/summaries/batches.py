@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, TypeVar
 
 import httpx2
 from anthropic import (
-    Anthropic,
     AnthropicError,
     APIConnectionError,
     APIStatusError,
@@ -29,6 +28,8 @@ from pydantic import BaseModel, ValidationError
 
 from kb_build.errors import SummaryError
 from kb_build.summaries.replies import SummaryReply
+from simworlds.llm.anthropic_client import anthropic_client
+from simworlds.llm.errors import Rejected
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from anthropic.types.messages.batch_create_params import Request
 
     from kb_build.summaries.types import ClaudeOptions
+    from simworlds.llm.anthropic_client import Credentials
 
 _T = TypeVar("_T")
 _CLOCK_SKEW_SECONDS = 3600.0
@@ -87,28 +89,17 @@ class ItemResult(BaseModel):
 class BatchAPI:
     """The calls that summaries need. Each raises SummaryError when the API stays out of reach or says no."""
 
-    def __init__(self, api_key: str, options: ClaudeOptions, tell: Callable[[str], None]) -> None:
-        if not (api_key.isascii() and api_key.isprintable()):
-            raise SummaryError(
-                "ANTHROPIC_API_KEY holds characters that a key cannot have. Copy the key again."
-            )
+    def __init__(self, credentials: Credentials, options: ClaudeOptions, tell: Callable[[str], None]) -> None:
         try:
-            self._client = Anthropic(
-                api_key=api_key,
+            self._client = anthropic_client(
+                credentials,
                 base_url=options.base_url,
                 timeout=httpx2.Timeout(options.timeout, connect=min(options.timeout, 5.0)),
                 max_retries=options.retries,
             )
-            url = self._client.base_url
-        except httpx2.InvalidURL as error:
-            raise SummaryError(
-                f"ANTHROPIC_BASE_URL is not a valid address ({error}). Correct it or unset it."
-            ) from error
-        self.base_url = str(url)
-        if url.scheme not in ("http", "https") or not url.host:
-            raise SummaryError(
-                f"ANTHROPIC_BASE_URL ({self.base_url}) is not a web address. Correct it or unset it."
-            )
+        except Rejected as error:
+            raise SummaryError(str(error)) from error
+        self.base_url = str(self._client.base_url)
         self._options = options
         self._tell = tell
         self._answered = False

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 import secrets
 import time
 from typing import TYPE_CHECKING
@@ -32,6 +31,8 @@ from kb_build.summaries.types import (
     SummaryReport,
     summary_key,
 )
+from simworlds.llm.anthropic_client import Credentials
+from simworlds.llm.errors import Rejected
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -106,8 +107,11 @@ class _Run:
     def __init__(
         self, pages: Mapping[str, Page], store: SummaryStore, options: ClaudeOptions, progress: Progress
     ) -> None:
-        api_key = (options.api_key or os.environ.get("ANTHROPIC_API_KEY") or "").strip()
-        if not api_key:
+        try:
+            credentials = Credentials.found(options.api_key)
+        except Rejected as error:
+            raise SummaryError(str(error)) from error
+        if credentials is None:
             raise SummaryError(
                 f"Summaries by Claude are missing for {len(pages)} pages, and there is no key to ask for "
                 "them. Set ANTHROPIC_API_KEY, or use the method 'extractive', which needs none."
@@ -118,7 +122,7 @@ class _Run:
             )
         self.price = price_of(options.model, options.price)
         self.facts = facts(options.model)
-        self.api = BatchAPI(api_key, options, lambda line: progress(len(self.made), len(pages), line))
+        self.api = BatchAPI(credentials, options, lambda line: progress(len(self.made), len(pages), line))
         self.pages = pages
         self.store = store
         self.options = options

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import os
 import time
 from typing import TYPE_CHECKING
 
 import httpx2
-from anthropic import Anthropic, AnthropicError, APIStatusError
+from anthropic import AnthropicError, APIStatusError
 
+from simworlds.llm.anthropic_client import Credentials, anthropic_client
 from simworlds.llm.attempts import CONNECT_SECONDS, Attempts, Fault, Settings
 from simworlds.llm.errors import Rejected
 from simworlds.llm.request import params_of
@@ -19,6 +19,8 @@ from simworlds.llm.stream import BrokenStream, LimitedBytes, StreamedAnswer
 if TYPE_CHECKING:
     import random
     from collections.abc import Callable, Generator
+
+    from anthropic import Anthropic
 
     from simworlds.llm.messages import Ask, Turn, Usage
     from simworlds.llm.retries import Retry
@@ -133,32 +135,10 @@ class _MessagesAttempt:
 
 def _client(settings: Settings) -> Anthropic:
     """The package's client, without its own retries: it does not report them, nor retry broken streams."""
-    key = (settings.api_key or os.environ.get("ANTHROPIC_API_KEY") or "").strip()
-    token = "" if key else os.environ.get("ANTHROPIC_AUTH_TOKEN", "").strip()
-    if not key and not token:
+    if (credentials := Credentials.found(settings.api_key)) is None:
         raise Rejected(
             "There is no key for the model: set the environment variable ANTHROPIC_API_KEY. For a server of your own "
             "(ANTHROPIC_BASE_URL) that checks no key, any text will do."
         )
-    if not (key + token).isascii() or not (key + token).isprintable():
-        raise Rejected(
-            "ANTHROPIC_API_KEY contains characters that are not allowed in keys. Copy the key again."
-        )
     timeout = httpx2.Timeout(settings.silence, connect=min(settings.silence, CONNECT_SECONDS))
-    try:
-        client = Anthropic(
-            api_key=key or None,
-            auth_token=token or None,
-            base_url=settings.base_url,
-            timeout=timeout,
-            max_retries=0,
-        )
-    except (httpx2.InvalidURL, ValueError) as error:
-        raise Rejected(
-            f"The address of the model (ANTHROPIC_BASE_URL) or of a proxy is invalid: {error}."
-        ) from error
-    if client.base_url.scheme not in ("http", "https") or not client.base_url.host:
-        raise Rejected(
-            f"The address of the model (ANTHROPIC_BASE_URL) is not an HTTP URL: {client.base_url}."
-        )
-    return client
+    return anthropic_client(credentials, base_url=settings.base_url, timeout=timeout, max_retries=0)
