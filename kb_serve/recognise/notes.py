@@ -188,7 +188,9 @@ class Notes:
             return ""
         entry = self._reader.entry(owner)
         if entry is not None and entry.base in {"", STRUCT}:
-            owners = {found.owner for found in self._reader.by_name(name)} - {owner, STRUCT}
+            owners = {found.owner for found in self._reader.by_name(name)}
+            owners |= {path.rpartition(".")[0] for path in self._reader.removed_named(name)}
+            owners -= {owner, STRUCT}
             if any(self._reader.subclasses(other) for other in owners):
                 return ""
         aside = next((f" ({told} aside)" for start, told in _ASIDE.items() if owner.startswith(start)), "")

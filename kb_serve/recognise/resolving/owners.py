@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 TOLD_BY_MEMBER, _TOLD_BY_PART = 0.2, 0.28
 _NAMED_SO = 0.6  # of a class whose name or label has the variable's words, and that has the member
 _NODE_NAMED_SO = 0.93  # … of a node that has the very socket
+_TEXTURE_NAMED_SO = 0.91  # … of an old texture's node: less than of what scripts use a name for besides
 _NAMED_ALIKE = 0.3  # share of a name's fit that counts beside the member
 _OF_TEXTURES = "bpy.types.TextureNode"
 _LETTERS = 2  # of a word that tells nothing
@@ -69,8 +70,8 @@ class Owners:
         }
         fitting = sorted((node for node in shared if shared[node]), key=lambda node: -shared[node])
         for rank, node in enumerate(fitting):
-            is_named = shared[node] == len(variable)
-            yield node, (_NODE_NAMED_SO if is_named else _TOLD_BY_PART) - 0.001 * rank
+            named_so = _TEXTURE_NAMED_SO if node.startswith(_OF_TEXTURES) else _NODE_NAMED_SO
+            yield node, (named_so if shared[node] == len(variable) else _TOLD_BY_PART) - 0.001 * rank
 
     def likeliest_sockets(self, sockets: Sequence[SymbolEntry]) -> Sequence[SymbolEntry]:
         """Sockets of one name, those first that are likeliest meant: of used nodes, and not of old textures."""

@@ -116,7 +116,7 @@ _NAMES = {
     "KeyMapItem": "kmi",
     "KeyMap": "km",
     "AOV": "aov",
-    "ColorRamp": "ramp color_ramp cr",
+    "ColorRamp ShaderNodeValToRGB": "ramp color_ramp cr",
     "MovieClip": "clip",
     "Text": "textblock text_block",
     "Event": "event evt",

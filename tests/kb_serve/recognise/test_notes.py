@@ -84,6 +84,20 @@ def test_what_a_build_was_made_without_is_not_called_new() -> None:
 
 
 @pytest.mark.parametrize(
+    ("owner", "name", "said"),
+    [
+        ("Object", "no_such_thing", ", and never had it from 2.79 to "),
+        ("UvSculpt", "input_samples", ""),  # once inherited: Paint had it
+    ],
+)
+def test_what_a_class_may_have_inherited_once_is_not_said_never_to_have_been(
+    reader: BaseReader, owner: str, name: str, said: str
+) -> None:
+    told = Notes(reader).never(f"bpy.types.{owner}", name)
+    assert told.startswith(said) if said else told == ""
+
+
+@pytest.mark.parametrize(
     ("path", "written"),
     [
         (

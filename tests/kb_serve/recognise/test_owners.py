@@ -25,6 +25,8 @@ T = "bpy.types."
         ("voronoi.feature = 'F1'", "ShaderNodeTexVoronoi.feature"),
         ("magic.turbulence_depth = 3", "ShaderNodeTexMagic.turbulence_depth"),
         ("ramp.color_ramp.elements[0].color = (1, 1, 1, 1)", "ColorRampElement.color"),
+        ('ramp.inputs["Fac"]', 'ShaderNodeValToRGB.inputs["Factor"]'),
+        ('cr.outputs["Color"]', 'ShaderNodeValToRGB.outputs["Color"]'),
         ("strip.channelbag(slot, ensure=True)", "ActionKeyframeStrip.channelbag"),
         ("socket.structure_type = 'FIELD'", "NodeTreeInterfaceSocket.structure_type"),
         ("strips.new_image(name='a', filepath='b', channel=1, frame_start=1)", "StripsTopLevel.new_image"),
