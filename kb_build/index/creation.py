@@ -221,9 +221,10 @@ class _Calls:
                 call = (
                     f"{tree}.interface.new_socket(\"Name\", in_out='INPUT', socket_type='{item.identifier}')"
                 )
-                for cls in (item.identifier, f"NodeTreeInterface{item.identifier.removeprefix('Node')}"):
+                made = f"NodeTreeInterface{item.identifier.removeprefix('Node')}"
+                for cls, choice in ((made, item.identifier), (item.identifier, "")):
                     if TYPES + cls in self._symbols:
-                        yield TYPES + cls, Creation(call, _NEW_SOCKET)
+                        yield TYPES + cls, Creation(call, _NEW_SOCKET, choice)
 
     def _arguments(self, maker: Symbol, cls: Symbol, choice: str, *, block: str) -> str:
         given = [

@@ -238,6 +238,10 @@ _SMOOTHED = (
     "The Smooth by Angle modifier is a group of geometry nodes: `bpy.ops.object.shade_auto_smooth(angle=0.5)` adds it "
     "to the selected objects."
 )
+_RATED = (
+    "A scene has `fps / fps_base` frames a second: 23.976 are `fps = 24` with `fps_base = 1.001`, 29.97 are `fps = 30` "
+    "with it."
+)
 _FACES = "The lists hold the faces themselves (`BMFace`), not their indices."
 
 ADVICE: tuple[Advice, ...] = (
@@ -288,6 +292,7 @@ ADVICE: tuple[Advice, ...] = (
     Advice(_BAKED_BY, frozenset({"bpy.ops.object.bake"}) | _of("CyclesRenderSettings.bake_type")),
     Advice(_COMPRESSED, frozenset({"bpy.ops.wm.save_as_mainfile", "bpy.ops.wm.save_mainfile"})),
     Advice(_UNREAD, _of("Image.pixels", "Image"), asked=_stems("render result")),
+    Advice(_RATED, _of("RenderSettings.fps", "RenderSettings.fps_base")),
     Advice(_UNRENDERED, _of("World.color")),
     Advice(_MOVED, frozenset({_RIGID_BODY}), chapters_of=_RIGID_BODY),
     Advice(

@@ -6,7 +6,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 from kb_build.symbols.api_names import OPERATORS, STRUCT, TYPES, interface_part
-from kb_build.symbols.paths import as_code, split_path
+from kb_build.symbols.lines import written
+from kb_build.symbols.paths import as_code, is_socket, last_name, split_path
 from kb_build.symbols.unlisted import OPTIONS, option_of
 from kb_serve.recognise.names.corrections import nearest
 from kb_serve.recognise.names.enum_values import EnumValues
@@ -148,9 +149,11 @@ class Notes:
     def _missing(self, recognition: Recognition) -> Iterator[str]:
         removed_names = {removed.path.rpartition(".")[2] for removed in recognition.removed}
         similar = [match.id for match in recognition.matches if match.why == SIMILAR]
-        closest = f" Closest: {_list(similar)}." if similar else ""
+        closest = f" Closest: {_list(map(self._written, similar))}." if similar else ""
         for missing in recognition.missing:
             if (recognition.removed and not missing.sure) or not missing.told:
+                continue
+            if interface_part(last_name(missing.owner)):  # of Python: RNA does not list what such a class has
                 continue
             if not missing.owner and (similar or not recognition.matches):
                 found = closest or " What follows was found by its words."
@@ -168,6 +171,11 @@ class Notes:
             alike = similar or [f"{doubted.owner}.{name}" for name, _ in names]
             closest = f" Closest: {_list(alike)}." if alike else ""
             yield f"{_if(doubted.variable)}{self._lacks(doubted)}{closest}"
+
+    def _written(self, path: str) -> str:
+        """A path as a script can write it: no socket by an identifier that never gives it."""
+        symbol = self._reader.symbol(path) if is_socket(path) else None
+        return written(symbol) if symbol else path
 
     def _lacks(self, missing: MissingName) -> str:
         """A sentence on what a class does not have, and whether it ever had it."""

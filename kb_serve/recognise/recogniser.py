@@ -12,6 +12,7 @@ from kb_build.symbols.api_names import ID, OPERATORS, TYPES
 from kb_build.symbols.paths import last_name, plain_path, socket_node
 from kb_serve.recognise.code.contexts import NO_OVERRIDE, OVERRIDE
 from kb_serve.recognise.code.expressions import Expressions
+from kb_serve.recognise.code.met_conditions import is_met
 from kb_serve.recognise.code.operator_properties import explain_properties
 from kb_serve.recognise.code.own_names import own_names
 from kb_serve.recognise.code.products import WITH_AT, Products
@@ -57,6 +58,8 @@ if TYPE_CHECKING:
 
 # What the panels of render engines name engines by, whether this Blender has them or not: none is set.
 _FOR_ENGINES = re.compile(r"\bCOMPAT_ENGINES\s*=\s*[{(\[][^})\]]*")
+# In which classes are that scripts import by name.
+_PACKAGES = (TYPES, "mathutils.", "bmesh.types.")
 _FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n/]*/[^'"\n]*\1""")
 _FEW = 3
 _SURE = 0.9
@@ -83,6 +86,19 @@ _UNKNOWN_MODULE = (
 )
 _OF_STRINGS = frozenset({"enum item", "quoted name"})
 _GUESSES = _OF_STRINGS | {"name", "label", "title", "on the way"}
+
+
+def _outside_of_paths(text: str) -> list[Chain]:
+    """The chains of a text but for those in the paths of files: ``wood.png`` of ``"//textures/wood.png"``."""
+    paths = [match.span() for match in _FILE_PATH.finditer(text)]
+    found: list[Chain] = []
+    end = 0
+    for chain in find_chains(text):
+        start = text.find(chain.source, end)
+        end = start + len(chain.source)
+        if not any(first < start < last for first, last in paths):
+            found.append(chain)
+    return found
 
 
 def _sets_a_socket(chain: Chain) -> bool:
@@ -120,7 +136,7 @@ class Recogniser:
         """Everything that ``query`` names, surest first."""
         query = _FOR_ENGINES.sub("COMPAT_ENGINES", query)
         recognition = Recognition()
-        own = own_names(query)
+        own = own_names(query, self._is_of_blender)
         chains = own.without(with_bindings(query, find_chains(query)))
         recognition.notes += (
             _UNKNOWN_MODULE.format(version=self._reader.meta.get("minor", ""), module=module)
@@ -133,8 +149,9 @@ class Recogniser:
         if not is_settled:
             self._messages.recognise(query, recognition)
             text = without_callers_names(without_wording(query))
-            code = _FILE_PATH.sub(" ", without_callers_names(without_wording(without_values(query))))
-            found = chains if code == query else own.without(with_bindings(code, find_chains(code)))
+            code = without_callers_names(without_wording(without_values(query)))
+            is_plain = code == query and "/" not in query
+            found = chains if is_plain else own.without(with_bindings(code, _outside_of_paths(code)))
             self._expressions.recognise(found, recognition)
             self._enum_values.recognise(text, recognition, classes_of_things(query))
             self._removed_values(text, recognition)
@@ -155,6 +172,17 @@ class Recogniser:
         self._explain_missing(recognition)
         recognition.matches.sort(key=lambda match: (-match.sure, match.why != "successor"))
         return recognition
+
+    def _is_of_blender(self, name: str) -> bool:
+        """Whether a module or class is Blender's, or was of other versions or builds."""
+        paths = (name, *(package + name for package in _PACKAGES))
+        known = (self._reader.entry(path) for path in paths)
+        is_here = any(entry is not None and entry.kind in {"module", "class"} for entry in known)
+        return (
+            is_here
+            or name in self._reader.unknown_modules
+            or any(map(self._reader.removed, (name, TYPES + name)))
+        )
 
     def _check_uses(self, query: str, chains: list[Chain], recognition: Recognition) -> None:
         """Adds removed values and arguments of what was recognised, and notes on wrong ones."""
@@ -180,9 +208,10 @@ class Recogniser:
                 continue
             if is_method_of_python(_name(chain), symbol):
                 continue  # what it takes and gives is no value of the symbol
-            recognition.notes += filter(
-                None, (self._enum_values.condition(symbol.path, value) for value in chain.values)
-            )
+            for value in chain.values:
+                where = self._enum_values.where(symbol.path, value)
+                if where and not is_met(symbol.path, where, query, chains, self._reader):
+                    recognition.notes.append(self._enum_values.condition(symbol.path, value))
             old = list(self._old.in_values(chain, symbol))
             for removed in old:
                 recognition.add_removed(removed)

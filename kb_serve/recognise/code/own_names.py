@@ -1,5 +1,5 @@
-"""Names that a piece of code gives itself: variables that hold Python's own values, modules that it imports from beside
-it, properties and operators that it registers. Blender has nothing to say of these.
+"""Names that a piece of code gives itself: variables that hold values of Python's own or of its classes, what it
+imports of other modules than Blender's, properties and operators that it registers. Blender knows nothing of these.
 
 Code stands in queries without its ends of lines, so that Python cannot parse it.
 """
@@ -14,34 +14,47 @@ from kb_build.symbols.api_names import OPERATORS
 from kb_serve.recognise.resolving.variables import usual_classes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence, Set
 
     from kb_serve.recognise.recognition import MissingName
     from kb_serve.recognise.resolving.chains import Chain
 
-_ASSIGNED = re.compile(r"(?<![\w.])(?P<name>[^\W\d]\w*)\s*=(?!=)\s*(?P<value>\S{0,12})")
+_ASSIGNED = re.compile(r"(?<![\w.])(?P<name>[^\W\d]\w*)\s*=(?!=)\s*(?P<value>\S{0,60})")
 # What begins a value of Python's own; a number or None is often replaced by something of Blender's.
 _OF_PYTHON = re.compile(
-    r"[\[{]|[rbfu]{0,2}[\"']|(?:set|list|dict|tuple|str|frozenset|sorted|range|open|Path|defaultdict|deque|Counter)\("
+    r"[\[{]|[rbfu]{0,2}[\"']|(?:set|list|dict|tuple|str|frozenset|sorted|range|open|Path|defaultdict|deque|Counter|input|"
+    r"int|float|bool|len|abs|round|zip|map|filter|enumerate|bytes|object)\("
 )
+_WORD = re.compile(r"\w+")
+_CALLED = re.compile(r"(\w+)\(")
 _BRACKET = re.compile(r"([()])")
 _FROM_BESIDE = re.compile(
     r"\bfrom\s+\.[\w.]*\s+import\s+\(?\s*((?:\w+(?:\s+as\s+\w+)?\s*,\s*)*\w+(?:\s+as\s+\w+)?)"
+)
+_IMPORTED = re.compile(r"\bimport\s+(\w+)[\w.]*\s+as\s+(\w+)")
+_IMPORTED_FROM = re.compile(
+    r"\bfrom\s+(?P<module>\w+)[\w.]*\s+import\s+\(?\s*"
+    r"(?P<names>(?:\w+(?:\s+as\s+\w+)?\s*,\s*)*\w+(?:\s+as\s+\w+)?)"
+)
+# A class that has no class of Blender's above it, as far as its head tells.
+_CLASS = re.compile(
+    r"\bclass\s+(?P<name>\w+)\s*"
+    r"(?:\(\s*(?:(?:object|Exception|(?:enum\.)?(?:Int|Str)?(?:Enum|Flag)|(?:typing\.)?(?:NamedTuple|TypedDict))\s*)?\)\s*)?:"
 )
 _REGISTERED = re.compile(
     r"\bbpy\.types\.\w+\.(?P<name>\w+)\s*(?::[^=\n]{1,60})?=\s*(?:bpy\.)?(?:props\.)?\w+Property\("
 )
 _OF_CLASS = re.compile(r"(?<![\w.])(?P<name>\w+)\s*:\s*(?:bpy\.)?(?:props\.)?\w+Property\(")
 _FUNCTION = re.compile(r"\bdef\s+\w+\(([^()]*)")
-_PARAMETER = re.compile(r"(?:^|,)\s*\**(\w+)")
-_SIGNS = ("=", "import", "Property(", "def ")  # one of which code has that gives itself names
+_PARAMETER = re.compile(r"(?:^|,)\s*\**(?P<name>\w+)\s*(?::\s*(?P<type>[^,=]+))?")
+_SIGNS = ("=", "import", "Property(", "def ", "class ")  # one of which code has that gives itself names
 _OPERATOR = re.compile(r"\bbl_idname\s*=\s*[\"'](?P<module>[a-z_]\w*)\.(?P<name>\w+)[\"']")
 
 
 @dataclass(frozen=True, slots=True)
 class OwnNames:
-    """``variables`` and modules of a piece of code that are none of Blender's, the ``parameters`` of its functions, the
-    ``properties`` of its classes and those that it adds to Blender's, the paths of its ``operators``.
+    """``variables``, classes and modules of a piece of code that are none of Blender's, the ``parameters`` of its
+    functions, the ``properties`` of its classes and those that it adds to Blender's, the paths of its ``operators``.
     """
 
     variables: frozenset[str] = frozenset()
@@ -66,24 +79,36 @@ class OwnNames:
         return is_own or is_of_parameter
 
 
-def own_names(text: str) -> OwnNames:
-    """The names that a text gives itself, if it is code."""
+def own_names(text: str, is_of_blender: Callable[[str], bool]) -> OwnNames:
+    """The names that a text gives itself, if it is code. ``is_of_blender`` tells of the name of a module or class
+    whether it is one of Blender's, or was.
+    """
     if not any(sign in text for sign in _SIGNS):
         return _NONE
     properties = (match["name"] for form in (_REGISTERED, _OF_CLASS) for match in form.finditer(text))
+    classes = frozenset(match["name"] for match in _CLASS.finditer(text))
+    variables = _variables(_outside_brackets(text), classes)
+    given = [one for match in _FUNCTION.finditer(text) for one in _PARAMETER.finditer(match[1])]
+    others = (
+        one["name"]
+        for one in given
+        if one["type"] and not any(map(is_of_blender, _WORD.findall(one["type"])))
+    )
     return OwnNames(
-        frozenset((*_variables(_outside_brackets(text)), *_from_beside(text))),
-        frozenset(name for match in _FUNCTION.finditer(text) for name in _PARAMETER.findall(match[1])),
+        frozenset((*classes, *variables, *others, *_from_beside(text), *_imported(text, is_of_blender))),
+        frozenset(one["name"] for one in given),
         frozenset(properties),
         frozenset(f"{OPERATORS}{match['module']}.{match['name']}" for match in _OPERATOR.finditer(text)),
     )
 
 
-def _variables(text: str) -> Iterator[str]:
-    """The variables that are set to values of Python's own, and to nothing else."""
+def _variables(text: str, classes: Set[str]) -> Iterator[str]:
+    """The variables that are set to values of Python's own, or to instances of ``classes``, and to nothing else."""
     values: dict[str, list[bool]] = {}
     for match in _ASSIGNED.finditer(text):
-        values.setdefault(match["name"], []).append(_OF_PYTHON.match(match["value"]) is not None)
+        called = _CALLED.match(match["value"])
+        is_own = (called and called[1] in classes) or _OF_PYTHON.match(match["value"])
+        values.setdefault(match["name"], []).append(bool(is_own))
     return (name for name, are_own in values.items() if all(are_own))
 
 
@@ -105,6 +130,16 @@ def _from_beside(text: str) -> Iterator[str]:
     """The names that are imported from modules beside the code's own."""
     for match in _FROM_BESIDE.finditer(text):
         yield from (name.split()[-1] for name in match[1].split(","))
+
+
+def _imported(text: str, is_of_blender: Callable[[str], bool]) -> Iterator[str]:
+    """The names under which modules that are none of Blender's are imported, or what is in them."""
+    for match in _IMPORTED.finditer(text):
+        if not is_of_blender(match[1]):
+            yield from match.groups()
+    for match in _IMPORTED_FROM.finditer(text):
+        if not is_of_blender(match["module"]):
+            yield from (name.split()[-1] for name in match["names"].split(","))
 
 
 _NONE = OwnNames()

@@ -119,6 +119,11 @@ ADDED_BY = {
         "bpy.ops.particle.new_target",
         "An operator adds one: `with bpy.context.temp_override(particle_system=psys): bpy.ops.particle.new_target()`.",
     ),
+    f"{T}DriverVariable.targets": Elsewhere(
+        f"{T}DriverVariable.type",
+        "A variable has as many as its type takes: two with `var.type = 'LOC_DIFF'` or `'ROTATION_DIFF'`, else one; "
+        "set `var.targets[0].id` and what else that type reads.",
+    ),
     f"{T}Object.material_slots": Elsewhere(
         f"{T}IDMaterials.append",
         "The object's data has the materials: `obj.data.materials.append(material)` adds a slot with one.",

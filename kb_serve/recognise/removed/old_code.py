@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
 from kb_build.symbols.api_names import OPERATORS, SIDES, TYPES, interface_part
+from kb_build.symbols.flags import NODE_FAMILIES
 from kb_build.symbols.paths import is_socket, last_name, socket_node, split_path
 from kb_serve.recognise.removed.lost_names import LostName, LostNames, is_telling
 from kb_serve.recognise.resolving.call_texts import arguments, texts_given, texts_in
@@ -437,7 +438,8 @@ class OldCode:
 
     def in_strings(self, text: str) -> Iterator[RemovedSymbol]:
         """Removed classes, operators and properties whose names are quoted: ``nodes.new("ShaderNodeTexMusgrave")``."""
-        yield from filter(None, map(self._removed.of_path, _quoted_paths(text)))
+        quoted = filter(None, map(self._removed.of_path, _quoted_paths(text)))
+        yield from (removed for removed in quoted if removed.targets or _is_given_as_text(removed.path))
         for pattern in _PROPERTY_NAMES:
             for match in islice(pattern.finditer(text), _MOST_QUOTED):
                 for chain in find_chains(f"{match[1]}.{match[2]}")[:1]:
@@ -453,6 +455,12 @@ def _is_set_to_item(chain: Chain) -> bool:
 def _old(chain: Chain, lost: LostName | None) -> OldName | None:
     """What was lost, with the steps of the chain behind it."""
     return OldName(lost.removed, chain.steps[lost.steps :]) if lost else None
+
+
+def _is_given_as_text(path: str) -> bool:
+    """Whether scripts give such a class or operator by its name in a text: not ``LocRotScale``, a keying set's."""
+    name = last_name(path)
+    return path.startswith(OPERATORS) or name.startswith(NODE_FAMILIES) or bool(interface_part(name))
 
 
 def _quoted_paths(text: str) -> Iterator[str]:

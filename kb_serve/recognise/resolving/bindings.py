@@ -57,7 +57,7 @@ def with_bindings(text: str, chains: Sequence[Chain]) -> list[Chain]:
         elif is_whole and (name := _iterated(found)) and _SEQUENCE.fullmatch(gap):
             element = replace(own, steps=(*own.steps, _ELEMENT))
             elements[name] = bound[name] = _Binding(element, place)
-        elif not own.steps and len(found) > 1 and found[-1].root == "as" and found[-2].steps:
+        elif not own.steps and _is_named_otherwise(found):
             bound[own.root] = _Binding(found[-2], place - 2)
         found.append(own)
         sockets += (_from(socket, bound, leading) for socket in sockets_in(chain))
@@ -81,6 +81,13 @@ def _without(found: Sequence[Chain], bound: dict[str, _Binding]) -> dict[str, _B
     if not found or not found[-1].assigned or found[-1].steps:
         return bound
     return {name: value for name, value in bound.items() if name != found[-1].root}
+
+
+def _is_named_otherwise(found: Sequence[Chain]) -> bool:
+    """Whether ``as`` ends what was found, behind an expression or a module that is imported."""
+    if len(found) < 2 or found[-1].root != "as":
+        return False
+    return bool(found[-2].steps) or (len(found) > 2 and found[-3].root == "import" and not found[-3].steps)
 
 
 def _is_single(found: Sequence[Chain], before: str) -> bool:

@@ -55,7 +55,7 @@ class ChainStarts:
         """(value, steps used, fit) for everything that the chain's root can stand for."""
         if self._is_of_the_instance(chain):
             own = replace(chain, root=chain.steps[0].text, steps=chain.steps[1:])
-            yield from ((value, used + 1, fit) for value, used, fit in self.of(own))
+            yield from ((value, 1, fit) for value, fit in self._of_variable(own, of_instance=True))
         elif (exact := self._rooted(chain)) and self._may_be_variable(chain, exact[0].symbol):
             named = self._named_like_a_module(chain.root, _first_name(chain))
             for rank, cls in enumerate(named):
@@ -74,11 +74,13 @@ class ChainStarts:
             return False
         return not any(entry.group == "ui" for entry in self._reader.by_name(_first_name(chain)))
 
-    def _of_variable(self, chain: Chain) -> Iterator[tuple[ChainValue, float]]:
-        """(value, fit) for everything that a variable can stand for: by its name, then by the member that it has."""
+    def _of_variable(self, chain: Chain, *, of_instance: bool = False) -> Iterator[tuple[ChainValue, float]]:
+        """(value, fit) for everything that a variable, or an attribute of a script's own instance, can stand for: by
+        its name, then by the member that it has.
+        """
         seen: set[str] = set()
         by_key = [(NODES_MODIFIER, USUAL)] if _is_by_input(chain) else []
-        for cls, fit in (*self._variables.classes(chain.root), *by_key):
+        for cls, fit in (*self._variables.classes(chain.root, of_instance=of_instance), *by_key):
             if cls not in seen:
                 seen.add(cls)
                 yield ChainValue(cls, cls), fit

@@ -80,6 +80,12 @@ class Chain:
         return ".".join(names)
 
     @property
+    def variable(self) -> str:
+        """The name that the text begins with: the root, but where that is what a variable was bound to."""
+        start = _IDENTIFIER.match(self.source)
+        return start[0] if start else self.root
+
+    @property
     def attributes(self) -> tuple[str, ...]:
         """Every name after the root, in order."""
         return tuple(step.text for step in self.steps if step.kind == "attr")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import COLLECTION, GROUPS, NODE, OBJECT, OPERATORS, SIDES, STRUCT, TYPES
-from kb_build.symbols.paths import is_socket
+from kb_build.symbols.paths import is_socket, last_name
 from kb_build.symbols.python_values import METHODS, python_class
 from kb_serve.recognise.code.refusals import is_listed, refuses, refuses_call
 from kb_serve.recognise.names.holders import by_what_holds_it
@@ -104,8 +104,9 @@ class Resolver:
 
     def resolve(self, chain: Chain) -> list[ResolvedChain]:
         """Every reading of a chain, best first: most steps resolved, then the likelier class for a variable."""
+        data = self._data_of(chain.variable)
         readings = [
-            replace(self._follow(value, chain.steps[used:], self._data_of(chain.root)), fit=fit)
+            replace(self._follow(value, chain.steps[used:], data), fit=fit)
             for value, used, fit in self._starts.of(chain)
         ]
         unique: dict[tuple[tuple[str, ...], str], ResolvedChain] = {}
@@ -184,8 +185,8 @@ class Resolver:
                 owners = tuple(dict.fromkeys(self._unresolved(before, step)[1] for before in values))
                 left = len(steps) - number
                 return ResolvedChain(tuple(symbols), missing, owner, steps_left=left, owners=owners)
-            if data and not number and following[0].symbol == _OBJECT_DATA:
-                following = [replace(following[0], cls=data)]
+            if data and following[0].symbol == _OBJECT_DATA:
+                following, data = [replace(following[0], cls=data)], ""
             first = following[0].symbol
             alike = tuple(dict.fromkeys(after.symbol for after in following if after.symbol != first))
             values = following
@@ -393,7 +394,9 @@ class Resolver:
         if entry is None or entry.kind != "function":
             return value
         for _, choice in _QUOTED.findall(arguments):
-            for cls, maker in self._reader.made_by_choice(choice):
+            # A former name makes what has the name of today.
+            today = last_name(self._reader.still_works(f"{TYPES}{choice}")) or choice
+            for cls, maker in self._reader.made_by_choice(today):
                 if maker == value.symbol:
                     return ChainValue(value.symbol, cls)
         returned = self._values.returned(value.symbol)

@@ -197,12 +197,13 @@ class Variables:
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
 
-    def classes(self, name: str) -> list[tuple[str, float]]:
+    def classes(self, name: str, *, of_instance: bool = False) -> list[tuple[str, float]]:
         """(class, fit) that a bare variable may have, best first: by context members and properties of its name, by
-        what scripts call so, and similar classes.
+        what scripts call so, and similar classes. ``of_instance``: it is an attribute of a class of the script's own,
+        of which Blender's properties of that name tell nothing.
         """
         fits: dict[str, float] = {}
-        for path, fit in self._candidates(name):
+        for path, fit in self._candidates(name, by_pointers=not of_instance):
             fits[path] = max(fit, fits.get(path, 0.0))
         found = sorted(fits.items(), key=lambda row: -row[1])
         if any(one[1] == other[1] for one, other in pairwise(found)):
@@ -222,7 +223,7 @@ class Variables:
                 used[cls] = max(used[cls], weights.get(path, 0.0))
         return used
 
-    def _candidates(self, name: str) -> Iterator[tuple[str, float]]:
+    def _candidates(self, name: str, *, by_pointers: bool) -> Iterator[tuple[str, float]]:
         named = self._reader.by_name(name)
         for entry in named:
             if entry.target and entry.kind == "context" and entry.type == "pointer":
@@ -233,7 +234,7 @@ class Variables:
                 yield path, fit
                 fit = OTHERWISE
         pointed = {entry.target for entry in named if entry.kind == "property" and entry.type == "pointer"}
-        for entry in named:
+        for entry in named if by_pointers else ():
             if entry.target and entry.kind == "property" and entry.type == "pointer":
                 yield TYPES + entry.target, _POINTER if len(pointed) == 1 else 0.5
         for entry in self._reader.members(f"{TYPES}BlendData").values():

@@ -72,7 +72,9 @@ def test_calls_are_functions_and_classes_that_exist(calls: dict[str, Creation], 
     for path, creation in calls.items():
         assert symbols[path].kind == "class"
         assert symbols[creation.maker].kind in {"function", "operator"}
-        types = next((p for p in symbols[creation.maker].parameters if p.name == "type"), None)
+        types = next(
+            (p for p in symbols[creation.maker].parameters if p.name in {"type", "socket_type"}), None
+        )
         items = {item.identifier for item in types.enum_items} if types else set[str]()
         assert not creation.choice or creation.choice in items | {symbols[path].name}
 

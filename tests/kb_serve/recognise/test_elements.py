@@ -49,6 +49,7 @@ _ADDED = {
         "with bpy.context.temp_override(particle_system=psys): bpy.ops.particle.new_target()",
         1,
     ),
+    "DriverVariable.targets": ("variable.targets", "variable.type = 'LOC_DIFF'", 1),
     "Object.material_slots": ("ob.material_slots", "ob.data.materials.append(material)", 1),
     "Key.key_blocks": ("mesh.shape_keys.key_blocks", 'ob.shape_key_add(name="Key")', 1),
     "BlendData.shape_keys": ("bpy.data.shape_keys", 'other.shape_key_add(name="Key")', 1),
@@ -192,6 +193,7 @@ for collection, change in json.load(open(sys.argv[-1])):
     ob.modifiers.new("Canvas", "DYNAMIC_PAINT")
     bpy.ops.dpaint.type_toggle(type="CANVAS")
     canvas = ob.modifiers["Canvas"].canvas_settings
+    variable = ob.driver_add("location", 0).driver.variables.new()
     clip = tracked(os.path.dirname(sys.argv[-1]))
     weighted.vertex_groups.new(name="Group").add([0], 1.0, "REPLACE")
     new = bpy.data.objects.new("New", None)
@@ -257,6 +259,7 @@ def test_all_are_tried_and_known(kb: KnowledgeBase) -> None:
         ('armature.bones.new("Bone")', "bpy.types.ArmatureEditBones.new"),
         ('bpy.data.pointclouds.new("P").points.add(3)', "bpy.types.PointCloud.resize"),
         ("context.view_layer.objects.selected.add(ob)", "bpy.types.Object.select_set"),
+        ("var = drv.variables.new()\nt = var.targets.new()", "bpy.types.DriverVariable.type"),
         ("AttributeError: 'ParticleSystems' object has no attribute 'new'", "bpy.types.ObjectModifiers.new"),
     ],
 )

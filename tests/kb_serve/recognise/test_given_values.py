@@ -43,6 +43,11 @@ if TYPE_CHECKING:
         ("self.report('ERROR', 'x')", "`type` of `bpy.types.Operator.report` takes a set: `{'ERROR'}`."),
         ("bpy.ops.wm.save_as_mainfile(filepath, copy=True)", "by name only: `filepath=filepath`."),
         ("bpy.ops.object.join(target=1)", "takes no arguments"),
+        ('bpy.data.images.load("/tmp/x.png", check=True)', "takes no `check`; closest: `check_existing`."),
+        (
+            'import bpy\nbpy.ops.wm.stl_export(filepath="out/x.stl", use_selection=True)\nprint(1)',
+            "takes no `use_selection`; closest: `export_selected_objects`.",
+        ),
         # The words that say what it is, and not "use"; its label; few of its other arguments say "select".
         ("bpy.ops.export_scene.fbx(use_animation=True)", "takes no `use_animation`; closest: `bake_anim`."),
         ("bpy.ops.export_scene.fbx(use_anim=True)", "Similar names: `bpy.ops.export_scene.fbx(bake_anim=…)`"),

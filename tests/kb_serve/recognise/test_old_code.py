@@ -318,3 +318,13 @@ def test_what_all_nodes_have_by_a_name_is_not_what_one_had(kb: KnowledgeBase, co
     (note,) = answer.notes
     assert note.startswith(f"`{T}Node.width` is another thing than")
     assert note.endswith(f"that is `{size}` now.")
+
+
+def test_the_name_of_a_variable_tells_what_data_its_object_has(kb: KnowledgeBase) -> None:
+    answer = kb.query("rig = bpy.context.object\nrig.data.layers[0] = True")
+    assert answer.hits[0].id == "bpy.types.Armature.collections"
+    assert any("removed in 4.0" in note for note in answer.notes)
+
+
+def test_a_keying_set_is_no_class_that_is_gone(kb: KnowledgeBase) -> None:
+    assert not kb.query("bpy.ops.anim.keyframe_insert_menu(type='LocRotScale')").notes

@@ -25,6 +25,14 @@ T = "bpy.types."
         ("voronoi.feature = 'F1'", "ShaderNodeTexVoronoi.feature"),
         ("magic.turbulence_depth = 3", "ShaderNodeTexMagic.turbulence_depth"),
         ("ramp.color_ramp.elements[0].color = (1, 1, 1, 1)", "ColorRampElement.color"),
+        (
+            "b = nt.nodes.new(\"ShaderNodeBsdfGlossy\")\nb.distribution = 'BECKMANN'",
+            "ShaderNodeBsdfAnisotropic.distribution",  # the name of today
+        ),
+        (
+            "s = g.interface.new_socket('N', in_out='INPUT', socket_type='NodeSocketInt')\ns.default_value = 3",
+            "NodeTreeInterfaceSocketInt.default_value",
+        ),
         ('ramp.inputs["Fac"]', 'ShaderNodeValToRGB.inputs["Factor"]'),
         ('cr.outputs["Color"]', 'ShaderNodeValToRGB.outputs["Color"]'),
         ("strip.channelbag(slot, ensure=True)", "ActionKeyframeStrip.channelbag"),
