@@ -11,17 +11,22 @@ if TYPE_CHECKING:
 
 # Name → class, of several that which this Blender has; with brackets, a list of them.
 _MEMBERS = {
-    "active_editable_fcurve": "FCurve", "active_file": "FileSelectEntry", "annotation_data": "Annotation GreasePencil",
-    "asset": "AssetRepresentation", "cloth": "ClothModifier", "collision": "CollisionModifier", "curves": "Curves",
-    "dynamic_paint": "DynamicPaintModifier", "edit_image": "Image", "edit_movieclip": "MovieClip",
-    "editable_fcurves": "[FCurve]", "fluid": "FluidModifier", "gpencil": "GreasePencil",
-    "image_paint_object": "Object", "lightprobe": "LightProbe", "line_style": "FreestyleLineStyle",
+    "active_annotation_layer": "AnnotationLayer GPencilLayer", "active_editable_fcurve": "FCurve",
+    "active_file": "FileSelectEntry", "active_gpencil_layer": "GPencilLayer", "active_sequence_strip": "Strip Sequence",
+    "annotation_data": "Annotation GreasePencil", "asset": "AssetRepresentation", "cloth": "ClothModifier",
+    "collision": "CollisionModifier", "curves": "Curves", "dynamic_paint": "DynamicPaintModifier",
+    "edit_image": "Image", "edit_movieclip": "MovieClip", "editable_fcurves": "[FCurve]",
+    "editable_gpencil_layers": "[GPencilLayer]", "editable_gpencil_strokes": "[GPencilStroke]",
+    "fluid": "FluidModifier", "gpencil": "GreasePencil", "gpencil_data": "GreasePencil", "gpencil_data_owner": "ID",
+    "id": "ID", "image_paint_object": "Object", "lightprobe": "LightProbe", "line_style": "FreestyleLineStyle",
     "particle_edit_object": "Object", "particle_system_editable": "ParticleSystem", "pointcloud": "PointCloud",
-    "sculpt_object": "Object", "selected_assets": "[AssetRepresentation]", "selected_editable_fcurves": "[FCurve]",
+    "sculpt_object": "Object", "selected_asset_files": "[FileSelectEntry]", "selected_assets": "[AssetRepresentation]",
+    "selected_editable_fcurves": "[FCurve]", "selected_editable_sequences": "[Strip Sequence]",
     "selected_files": "[FileSelectEntry]", "selected_ids": "[ID]", "selected_movieclip_tracks": "[MovieTrackingTrack]",
-    "selected_pose_bones_from_active_object": "[PoseBone]", "selected_visible_fcurves": "[FCurve]",
-    "sequencer_scene": "Scene", "soft_body": "SoftBodyModifier", "texture_user_property": "Property",
-    "ui_list": "UIList", "vertex_paint_object": "Object", "visible_fcurves": "[FCurve]",
+    "selected_pose_bones_from_active_object": "[PoseBone]", "selected_sequences": "[Strip Sequence]",
+    "selected_visible_fcurves": "[FCurve]", "sequencer_scene": "Scene", "sequences": "[Strip Sequence]",
+    "soft_body": "SoftBodyModifier", "texture_user_property": "Property", "ui_list": "UIList",
+    "vertex_paint_object": "Object", "visible_fcurves": "[FCurve]", "visible_gpencil_layers": "[GPencilLayer]",
     "weight_paint_object": "Object",
 }  # fmt: skip
 

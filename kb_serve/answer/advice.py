@@ -128,10 +128,13 @@ _AS_MODIFIED = (
     "`evaluated.to_mesh_clear()` when it is read."
 )
 _PARENTED = (
-    "`child.matrix_parent_inverse = parent.matrix_world.inverted()` leaves the child where it is, once "
-    "`bpy.context.view_layer.update()` has brought the parent's matrix up to date."
+    "A child stays where it is by `world = child.matrix_world.copy()`, then `child.parent = parent` (of a bone also "
+    "`parent_type = 'BONE'` and `parent_bone`), then `child.matrix_world = world`, once "
+    "`bpy.context.view_layer.update()` has brought both matrices up to date."
 )
-_OF_POSE = "It is in the armature's own space: in the world at `ob.matrix_world @ bone.tail`."
+_OF_POSE = (
+    "It is in the armature's own space: in the world at `ob.matrix_world @ bone.head`, or `@ bone.tail`."
+)
 _LINKED_TWICE = (
     "It stays in the collections that it is in. To move it, before: "
     "`for other in ob.users_collection: other.objects.unlink(ob)`."

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from kb_serve.answer.advice import Advice
     from kb_serve.reader import BaseReader
 
+_MOST_SAID = 20  # words; in more, which are code, those of a group stand by chance
 _TOGGLES_ATTRIBUTE = "bpy.ops.object.geometry_nodes_input_attribute_toggle"
 
 
@@ -58,6 +59,8 @@ class Practice:
 
     def _is_told_anyway(self, advice: Advice, said: frozenset[str]) -> bool:
         """Whether a question has a word of each group by which advice is told of any symbol."""
+        if len(said) > _MOST_SAID:
+            return False
         is_asked = not any(group.isdisjoint(said) for group in advice.wherever)
         is_asked = is_asked and advice.unless.isdisjoint(said)
         return is_asked and (not advice.needs or self._reader.entry(advice.needs) is not None)

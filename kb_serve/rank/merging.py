@@ -85,7 +85,7 @@ def _without_code(prose: str, recognition: Recognition) -> tuple[str, str]:
 
     A question that is little else stays whole.
     """
-    code = [source for source in recognition.readings if source in prose]
+    code = [source for source, *_ in recognition.readings if source in prose]
     if not code:
         return prose, ""
     rest = prose

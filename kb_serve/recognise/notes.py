@@ -153,7 +153,7 @@ class Notes:
         for missing in recognition.missing:
             if (recognition.removed and not missing.sure) or not missing.told:
                 continue
-            if interface_part(last_name(missing.owner)):  # of Python: RNA does not list what such a class has
+            if self._may_have_more(missing.owner):
                 continue
             if not missing.owner and (similar or not recognition.matches):
                 found = closest or " What follows was found by its words."
@@ -171,6 +171,14 @@ class Notes:
             alike = similar or [f"{doubted.owner}.{name}" for name, _ in names]
             closest = f" Closest: {_list(alike)}." if alike else ""
             yield f"{_if(doubted.variable)}{self._lacks(doubted)}{closest}"
+
+    def _may_have_more(self, owner: str) -> bool:
+        """Whether something may have more than is known: a class of the interface, which Python has made, or a member
+        of the context of which no class is known.
+        """
+        entry = self._reader.entry(owner)
+        is_untyped = entry is not None and entry.kind == "context" and not entry.target
+        return is_untyped or bool(interface_part(last_name(owner)))
 
     def _written(self, path: str) -> str:
         """A path as a script can write it: no socket by an identifier that never gives it."""

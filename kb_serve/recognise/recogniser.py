@@ -226,7 +226,7 @@ class Recogniser:
 
     def _check_guesses(self, chain: Chain, recognition: Recognition) -> None:
         """Adds what was lost by what a chain may be read as, and a note on a value that nothing so called takes."""
-        guesses = list(filter(None, map(self._reader.symbol, recognition.guesses.get(chain.source, ()))))
+        guesses = list(filter(None, map(self._reader.symbol, recognition.guesses.get(chain.key, ()))))
         if any(is_method_of_python(_name(chain), guess) for guess in guesses):
             return
         lost = [next(self._old.in_values(chain, guess), None) for guess in guesses]
@@ -262,7 +262,7 @@ class Recogniser:
         """What a chain was read as, or else a match of its last name that no other was read as; empty for none, and
         where what it leads to surely lacks that name.
         """
-        if (path := recognition.readings.get(chain.source)) is not None:
+        if (path := recognition.readings.get(chain.key)) is not None:
             return path
         if any(one.name == _name(chain) and one.sure for one in recognition.missing):
             return ""

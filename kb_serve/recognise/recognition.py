@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from kb_serve.recognise.resolving.chains import ChainKey
+
 if TYPE_CHECKING:
     from kb_serve.recognise.names.corrections import Correction
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol
@@ -77,8 +79,8 @@ class Recognition:
     """What was recognised: ``matches``, and what was wrong with the names in the query.
 
     ``arguments``: function or operator → those of its arguments that are named beside it.
-    ``readings``: expression as written → the symbol that it leads to.
-    ``guesses``: expression as written, where that is not certain → the symbols that it may lead to, likeliest first.
+    ``readings``: expression → the symbol that it leads to.
+    ``guesses``: expression of which that is not certain → the symbols that it may lead to, likeliest first.
     ``doubted`` is what the class lacks that the first expression's variable is named after, where another class has
     it: unlike the ``missing`` names it is right as likely as not, and nothing else is looked for.
     ``notes`` are further sentences for the caller. ``alike`` are the members of the surest one's name that other things
@@ -92,8 +94,8 @@ class Recognition:
     corrections: list[Correction] = field(default_factory=list)
     removed: list[RemovedSymbol] = field(default_factory=list)
     arguments: dict[str, list[str]] = field(default_factory=dict[str, "list[str]"])
-    readings: dict[str, str] = field(default_factory=dict[str, str])
-    guesses: dict[str, list[str]] = field(default_factory=dict[str, "list[str]"])
+    readings: dict[ChainKey, str] = field(default_factory=dict[ChainKey, str])
+    guesses: dict[ChainKey, list[str]] = field(default_factory=dict[ChainKey, list[str]])
     doubted: MissingName | None = None
     notes: list[str] = field(default_factory=list)
     alike: list[str] = field(default_factory=list)

@@ -8,6 +8,7 @@ import pkgutil
 import sys
 import textwrap
 import types
+from pathlib import Path
 
 import bpy
 
@@ -54,6 +55,14 @@ def load(name):
     except (ImportError, AttributeError):
         return None
     return value
+
+
+def names_below(folders):
+    """The names of the modules in the folders of a package, and of folders that are packages without saying so."""
+    names = {info.name for info in pkgutil.iter_modules(folders)}
+    for folder in folders:
+        names |= {path.parent.name for path in Path(folder).glob("*/*.py") if path.parent.name.isidentifier()}
+    return sorted(name for name in names if not name.startswith("_"))
 
 
 def belongs(value_name, owner, attribute):
@@ -260,9 +269,8 @@ class Walk:
             else:
                 self.member(name, module, path, attribute, value)
         if hasattr(module, "__path__"):
-            for info in pkgutil.iter_modules(module.__path__):  # pyright: ignore[reportAttributeAccessIssue]
-                if not info.name.startswith("_"):
-                    below.append((f"{name}.{info.name}", load(f"{name}.{info.name}")))
+            for found in names_below(module.__path__):
+                below.append((f"{name}.{found}", load(f"{name}.{found}")))
         for path, value in below:
             if value is not None:
                 self.module(path, value)

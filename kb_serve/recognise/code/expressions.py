@@ -298,7 +298,7 @@ class Expressions:
     ) -> None:
         """Adds the best readings of a chain, and the symbols on the way to the first."""
         is_sure = is_clear(chain, readings[0]) or self._agree(chain, readings)
-        recognition.readings[chain.source] = readings[0].symbols[-1] if is_sure else ""
+        recognition.readings[chain.key] = readings[0].symbols[-1] if is_sure else ""
         bare = not chain.attributes and not readings[0].keyed  # a class with a call or an index behind it
         # ``active_object``: rather what is called so than what it holds
         is_name = bare and not chain.steps and "_" in chain.root and bool(self._reader.by_name(chain.root))
@@ -307,7 +307,7 @@ class Expressions:
             for resolved in readings[:4]
             if resolved.complete and resolved.fit >= LIKELY * readings[0].fit
         ]
-        recognition.guesses[chain.source] = [resolved.symbols[-1] for resolved in likely]
+        recognition.guesses[chain.key] = [resolved.symbols[-1] for resolved in likely]
         for rank, resolved in enumerate(likely):
             sure = _BARE if bare and chain.steps and not _makes(chain, resolved) else 0.97
             if is_name and key(resolved.symbols[-1].rpartition(".")[2]) != key(chain.root):
@@ -369,7 +369,7 @@ class Expressions:
             return False
         resolved, corrections = corrected
         recognition.corrections += corrections
-        recognition.readings[chain.source] = resolved.symbols[-1] if is_clear(chain, resolved) else ""
+        recognition.readings[chain.key] = resolved.symbols[-1] if is_clear(chain, resolved) else ""
         alike = min(correction.similarity for correction in corrections) ** 0.25
         # What is wrong in code is what is asked for, before what is right.
         sure = 0.93 * alike if resolved.fit < USUAL else 1.0 - 0.1 * (1 - alike)

@@ -47,8 +47,8 @@ class NamesBeside:
             return
         said = said_in_words(chains)
         for place, chain in enumerate(chains):
-            certain = recognition.readings.get(chain.source, "")
-            path = certain or next(iter(recognition.guesses.get(chain.source, ())), "")
+            certain = recognition.readings.get(chain.key, "")
+            path = certain or next(iter(recognition.guesses.get(chain.key, ())), "")
             entry = self._reader.entry(path) if path and chain.steps else None
             if entry is None or entry.kind not in {"property", "context"}:
                 continue

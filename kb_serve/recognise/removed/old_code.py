@@ -220,11 +220,17 @@ class OldCode:
                     for owner in resolved.owners or (resolved.owner,)
                 )
                 found = next(filter(None, lost), None)
-                if not found and (resolved.fit >= 1.0 or is_telling(resolved.missing)):
+                is_telling_name = resolved.fit >= 1.0 or is_telling(resolved.missing)
+                if not found and is_telling_name and not self._fits_today(chain.root, resolved.missing):
                     found = self._removed.below(resolved.owner, resolved.missing, chain.root)
             if found:
                 return OldName(found, rest[1:])
         return None
+
+    def _fits_today(self, variable: str, name: str) -> bool:
+        """Whether a class that a variable is named after has a property of some name."""
+        owners = (entry.owner for entry in self._reader.by_name(name) if entry.kind == "property")
+        return any(variable_fit(variable, last_name(owner)) >= _NAMED_AFTER for owner in owners)
 
     def _socket(self, chain: Chain) -> OldName | None:
         """A removed socket, ``bsdf.inputs["Transmission"]``, of a node that only the variable's name tells."""
@@ -277,8 +283,9 @@ class OldCode:
         ]
         fit, path = max(owners, default=(0.0, ""))
         # A class of today that has the member and fits as well is meant.
-        today = [reading.symbols[0].rpartition(".")[2] for reading in readings if reading.complete]
-        best = max((variable_fit(chain.root, cls) for cls in today), default=0.0)
+        today = [reading.symbols[0] for reading in readings if reading.complete]
+        today += [entry.owner for entry in self._reader.by_name(attribute.text) if entry.kind == "property"]
+        best = max((variable_fit(chain.root, last_name(cls)) for cls in today), default=0.0)
         removed = self._removed.of_path(path) if fit >= max(_NAMED_AFTER, best + _BETTER) else None
         # The class that took its place may have the member, too.
         if removed is None or any(target.endswith(f".{attribute.text}") for target in removed.targets):

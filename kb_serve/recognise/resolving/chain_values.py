@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 _ARRAY = f"{TYPES}bpy_prop_array"
 _INSTANCES = {"bpy.context": "bpy.types.Context", "bpy.data": "bpy.types.BlendData"}
 _SEQUENCE = re.compile(r"(?:list|set|tuple)\[(?:bpy\.types\.)?([A-Z]\w*)(?:, \.\.\.)?\]")
+_VALUELESS = frozenset({"bundle", "closure", "custom", "geometry", "matrix", "shader"})  # types of sockets
 _CLASS_NAME = re.compile(r"\b(?:\w+\.)*[A-Z]\w+")
 
 
@@ -70,7 +71,12 @@ class ChainValues:
         return ChainValue(entry.path, self._value_class(entry))
 
     def _socket_class(self, entry: SymbolEntry) -> str:
-        """A socket's own class: the target in its record may be the data-block that it takes."""
+        """A socket's own class: the target in its record may be the data-block that it takes. Of what a setting of the
+        node decides, that of all sockets, where the usual one has no value.
+        """
+        symbol = self._reader.symbol(entry.path) if entry.type in _VALUELESS else None
+        if symbol and symbol.type_settings:
+            return f"{TYPES}NodeSocket"
         own = f"{TYPES}NodeSocket{entry.type.title()}"
         return (
             own

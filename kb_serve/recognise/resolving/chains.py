@@ -48,6 +48,9 @@ class ChainStep:
     text: str
 
 
+ChainKey = tuple[str, str, tuple[ChainStep, ...]]
+
+
 @dataclass(frozen=True, slots=True)
 class Chain:
     """A dotted expression: where it starts, and the steps from there. ``source`` is the text as typed.
@@ -78,6 +81,11 @@ class Chain:
                 break
             names.append(step.text)
         return ".".join(names)
+
+    @property
+    def key(self) -> ChainKey:
+        """What tells expressions apart: the text, and what it begins with, as a variable may be bound anew."""
+        return self.source, self.root, self.steps
 
     @property
     def variable(self) -> str:

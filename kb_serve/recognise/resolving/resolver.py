@@ -215,6 +215,8 @@ class Resolver:
             yield from self._attribute(value, step.text)
         elif step.kind == "call":
             yield self._call(value, step.text)
+        elif value.many and step.kind == "index" and ":" in step.text:  # a part of it
+            yield value
         elif value.many:
             yield from self._item(value, step)
         elif step.kind == "index":

@@ -80,3 +80,30 @@ def test_what_is_wrong_in_code_comes_before_what_is_right(kb: KnowledgeBase, cod
     answer = kb.query(code)
     assert answer.hits[0].id == meant
     assert [note for note in answer.notes if "read as" in note]
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "m = ob.modifiers.new('R', 'REMESH')\nm.mode = 'VOXEL'\n"
+        "m = ob.modifiers.new('W', 'WELD')\nm.mode = 'CONNECTED'",
+        "n = t.nodes.new('GeometryNodeFillCurve')\nn.inputs['Mode'].default_value = 'N-gons'\n"
+        "n = t.nodes.new('GeometryNodeMergeByDistance')\nn.inputs['Mode'].default_value = 'All'",
+        "for m in ob.modifiers[:]:\n    if m.type == 'ARRAY':\n        ob.modifiers.remove(m)",
+        "verts = bm.verts[:]\nverts[0].co.x = 1",
+        "n = t.nodes.new('GeometryNodeMenuSwitch')\nn.data_type = 'FLOAT'\nn.inputs['A'].default_value = 0.3",
+        "import _rna_xml as rna_xml\nrna_xml.xml_file_write(context, path, x)",
+        "import bpy_extras.wm_utils",
+    ],
+)
+def test_right_code_is_not_denied(kb: KnowledgeBase, code: str) -> None:
+    assert kb.query(code).notes == ()
+
+
+def test_each_value_is_judged_by_what_the_variable_is_there(kb: KnowledgeBase) -> None:
+    code = (
+        "m = ob.modifiers.new('R', 'REMESH')\nm.mode = 'CONNECTED'\n"
+        "m = ob.modifiers.new('W', 'WELD')\nm.mode = 'CONNECTED'"
+    )
+    (note,) = kb.query(code).notes
+    assert "bpy.types.RemeshModifier.mode" in note

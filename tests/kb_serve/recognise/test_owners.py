@@ -33,6 +33,7 @@ T = "bpy.types."
             "s = g.interface.new_socket('N', in_out='INPUT', socket_type='NodeSocketInt')\ns.default_value = 3",
             "NodeTreeInterfaceSocketInt.default_value",
         ),
+        ("group.add([0], 1.0, 'ADD')", "VertexGroup.add"),
         ('ramp.inputs["Fac"]', 'ShaderNodeValToRGB.inputs["Factor"]'),
         ('cr.outputs["Color"]', 'ShaderNodeValToRGB.outputs["Color"]'),
         ("strip.channelbag(slot, ensure=True)", "ActionKeyframeStrip.channelbag"),
