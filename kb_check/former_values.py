@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.paths import argument_of, plain_path
 from kb_check.literals import written
-from kb_serve.recognise.names.likely_values import likely_values
+from kb_serve.recognise.names.likely_values import value_there
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from kb_build.flow.types import Resolution
     from kb_check.script import Script
 
-_MOST = 8  # values that are listed
 _COLOR = 4  # numbers of a colour's socket
 _NUMBERS = (ast.Tuple, ast.List)
 
@@ -31,11 +30,8 @@ def new_value(script: Script, row: Resolution, instead: Sequence[str]) -> str:
         return ""
     node = written(script, node)
     kind, values = _taken(script, instead[0])
-    if values and isinstance(node, ast.Constant) and node.value not in values:
-        likely = likely_values(node.value, values) if isinstance(node.value, str) else []
-        told = [repr(value) for value in likely[:1] or values[:_MOST]]
-        more = ", …" if not likely and len(values) > _MOST else ""
-        return f"{node.value!r} is {told[0]} there." if likely else f"It takes {', '.join(told)}{more}."
+    if values and isinstance(node, ast.Constant):
+        return value_there(node.value, values)
     if kind == "rgba" and isinstance(node, _NUMBERS) and len(node.elts) == _COLOR - 1:
         return f"It takes {_COLOR} numbers, with alpha."
     return ""

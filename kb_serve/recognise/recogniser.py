@@ -51,13 +51,15 @@ from kb_serve.recognise.resolving.bindings import with_bindings
 from kb_serve.recognise.resolving.chains import Chain, find_chains
 from kb_serve.recognise.resolving.resolver import Resolver
 from kb_serve.recognise.resolving.subscripts import asked_of_inputs
-from kb_serve.recognise.resolving.variables import usual_classes
+from kb_serve.recognise.resolving.variables import is_guess, usual_classes
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 # What the panels of render engines name engines by, whether this Blender has them or not: none is set.
 _FOR_ENGINES = re.compile(r"\bCOMPAT_ENGINES\s*=\s*[{(\[][^})\]]*")
+_FEW_OWN = 2  # properties of a class that is asked for one which it lacks
+_LIKE_DICTIONARIES = frozenset({"get", "items", "keys", "pop", "values"})
 # In which classes are that scripts import by name.
 _PACKAGES = (TYPES, "mathutils.", "bmesh.types.")
 _FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n/]*/[^'"\n]*\1""")
@@ -235,12 +237,13 @@ class Recogniser:
         # A value that what it may be read as once took tells that it is meant.
         for removed in filter(None, lost):
             recognition.add_removed(removed)
+        is_unknown = is_guess(chain.root) and len(guesses) > 1
         if guesses and guesses[0].kind in {"property", "socket"} and not any(lost):
             name = guesses[0].path[len(guesses[0].owner) :]
             owners = [path for value in chain.values for path, *_ in self._reader.enum_owners(key(value))]
             if any(path.endswith(name) for path in owners):
                 return
-            if not self._are_of_operator(chain, owners, recognition):
+            if not self._are_of_operator(chain, owners, recognition) and not is_unknown:
                 recognition.notes += wrong_values(chain, guesses[0], (), self._reader)
 
     def _are_of_operator(self, chain: Chain, owners: list[str], recognition: Recognition) -> bool:
@@ -349,7 +352,7 @@ class Recogniser:
         for place, path in enumerate(self._operators.having(missing.owner, missing.name)):
             recognition.add(path, 0.95 - 0.01 * place, SIMILAR)
         otherwise = said_otherwise(missing, self._operators, self._reader)
-        names = self._reader.member_names(missing.owner) if missing.owner else []
+        names = self._names_of(missing)
         similar = nearest(missing.name, names)
         is_spelled_alike = bool(similar) and similar[0][1] >= _SPELLED_ALIKE
         if not is_spelled_alike and self._held(missing, otherwise, recognition):
@@ -374,6 +377,13 @@ class Recogniser:
         if self._reader.entry(missing.owner) and not similar and not otherwise:
             self._like_nothing(missing, names, recognition)
 
+    def _names_of(self, missing: MissingName) -> list[str]:
+        """What the class has that lacks a name. What all classes have, to be read like dictionaries, nobody means who
+        reads a ``value``.
+        """
+        names = self._reader.member_names(missing.owner) if missing.owner else []
+        return names if missing.called else [name for name in names if name not in _LIKE_DICTIONARIES]
+
     def _as_input(self, missing: MissingName, recognition: Recognition) -> bool:
         """Adds the input of a node that is called as what it, or what is made of it, lacks; whether there is one."""
         socket = input_meant(missing.owner, missing.name, self._reader)
@@ -391,6 +401,10 @@ class Recogniser:
         sure = _BEGINS_ALIKE
         if not begun and missing.told:
             sure, begun = _SHORTENED, shortened(missing.name, names)
+        if not begun and missing.told:  # what has little else is asked for that
+            own = self._reader.members(missing.owner)
+            properties = [name for name, entry in own.items() if entry.kind == "property"]
+            sure, begun = _BEGINS_ALIKE, properties if len(properties) <= _FEW_OWN else []
         for place, name in enumerate(begun):
             if member := self._reader.member_of(missing.owner, name):
                 recognition.add(member.path, sure - 0.01 * place, SIMILAR)

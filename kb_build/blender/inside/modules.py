@@ -269,7 +269,7 @@ class Walk:
             else:
                 self.member(name, module, path, attribute, value)
         if hasattr(module, "__path__"):
-            for found in names_below(module.__path__):
+            for found in names_below(module.__path__):  # pyright: ignore[reportAttributeAccessIssue]
                 below.append((f"{name}.{found}", load(f"{name}.{found}")))
         for path, value in below:
             if value is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.index.analysis import key
 from kb_build.symbols.api_names import OPERATORS, TYPES
 from kb_build.symbols.unlisted import SOMETIMES
 from kb_serve.recognise.names.elements import ADDING, elsewhere, meant_by_key
@@ -70,6 +71,11 @@ def _may_have(owner: SymbolEntry, chain: Chain, name: str) -> bool:
     )
 
 
+def _only_ends_like(chain: Chain, owner: str) -> bool:
+    """Whether the name of a class in a text is not that of some class of Blender's, however it is spelled."""
+    return chain.root == chain.variable and key(chain.root) != key(owner.rpartition(".")[2])
+
+
 class BrokenExpressions:
     """Tells, by one base, what expressions lack."""
 
@@ -123,6 +129,8 @@ class BrokenExpressions:
         is_definition = chain.assigned and resolved.steps_left == 1
         return (
             (resolved.fit < 1.0 and is_guess(chain.root) and not self._leads_there_alone(chain, resolved))
+            # A class of the script's, or one that it imports, which only ends like one of Blender's.
+            or (resolved.fit < 1.0 and chain.root[:1].isupper() and _only_ends_like(chain, resolved.owner))
             or resolved.missing.startswith("__")  # every class and module has such names
             or self._is_indexed(chain, resolved)
             # ``bl_idname = "object.my_operator"``

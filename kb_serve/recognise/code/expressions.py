@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import TYPES
-from kb_build.symbols.paths import is_socket, plain_path
+from kb_build.symbols.paths import as_code, is_socket, plain_path
 from kb_serve.recognise.code.broken_expressions import (
     CLEAR,
     LEAST,
@@ -31,6 +31,7 @@ from kb_serve.recognise.code.loose_names import LooseNames
 from kb_serve.recognise.code.names_beside import NamesBeside, said_in_words
 from kb_serve.recognise.code.python_methods import note_on_method
 from kb_serve.recognise.names.holders import by_what_holds_it
+from kb_serve.recognise.names.likely_values import value_there
 from kb_serve.recognise.names.said_otherwise import said_otherwise
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed.removed_symbols import for_reading
@@ -189,6 +190,7 @@ class Expressions:
                 if not chain.assigned:
                     old = replace(old, removed=for_reading(old.removed))
                 self._old_name(old, later, recognition)
+                self._new_value(chain, old, recognition)
                 continue
             broken = likeliest_broken(chain, readings)
             # ``wm.append`` is an operator rather than whatever else can be appended to, and so is ``render.render``,
@@ -292,6 +294,15 @@ class Expressions:
             if further is None:
                 return
             old = further
+
+    def _new_value(self, chain: Chain, old: OldName, recognition: Recognition) -> None:
+        """Tells what becomes of the text that a removed property is set to, where what took its place has another."""
+        if not chain.assigned or len(chain.values) != 1 or old.rest or not old.removed.targets:
+            return
+        target = self._reader.symbol(old.removed.targets[0])  # none where the target is a value itself
+        items = [item.identifier for item in target.enum_items] if target else []
+        if said := value_there(chain.values[0], items):
+            recognition.notes.append(f"`{as_code(old.removed.targets[0])}`: {said}")
 
     def _reading(
         self, chain: Chain, readings: list[ResolvedChain], later: float, recognition: Recognition

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.api_names import TYPES
 from kb_serve.recognise.resolving.chains import find_chains
 
 if TYPE_CHECKING:
@@ -15,7 +16,13 @@ _MESSAGE = re.compile(
     r"sequences of dimension 0 should contain (?P<wanted>\d{1,4}) items, not (?P<given>\d+)"
 )
 _SURE = 0.99  # of what alone wants so many, whatever the code's variables are like
+_LIKELY = 0.9  # … of what scripts set most that wants so many
 _FEW = 3
+# Number → what scripts set that wants so many, where nothing tells what was set.
+_USUAL = {
+    3: (f"{TYPES}Object.location", f"{TYPES}Light.color"),
+    4: (f"{TYPES}NodeSocketColor.default_value", f"{TYPES}Material.diffuse_color"),
+}
 _COLOUR = "The value has another number of items than the property: a colour with alpha has 4, one without 3."
 
 
@@ -40,6 +47,8 @@ class ItemCounts:
         told = named[:1] or wanting
         if not 0 < len(told) <= _FEW:
             recognition.notes.append(_COLOUR)
+            for rank, path in enumerate(_USUAL.get(wanted[0], ())):
+                recognition.add(path, _LIKELY - 0.01 * rank, "error message")
             return
         listed = " or ".join(f"`{path}`" for path in told)
         recognition.notes.append(f"{listed} takes {match['wanted']} numbers, not {match['given']}.")

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from kb_build.symbols.records import EnumItem, Symbol
     from kb_serve.reader import BaseReader
 
+_MOST_LISTED = 8
 _MOST = 3
 _LONG = 4  # letters of an item that a wrong one begins with
 _TELLING = 2  # words of a label that other texts have
@@ -69,6 +70,16 @@ def _with_alike(said: str, similar: list[str], items: Iterable[str]) -> list[str
     if len(similar) > 1 or not said.startswith(f"{similar[0]}_"):
         return similar
     return [*similar, *(item for item in items if item.startswith(f"{similar[0]}_"))][:_MOST]
+
+
+def value_there(written: object, items: Sequence[str]) -> str:
+    """A sentence on a value for what took a name's place and takes ``items``; empty where it takes the very value."""
+    if not items or written in items:
+        return ""
+    if likely := likely_values(written, items) if isinstance(written, str) else []:
+        return f"{written!r} is {likely[0]!r} there."
+    more = ", …" if len(items) > _MOST_LISTED else ""
+    return f"It takes {', '.join(map(repr, items[:_MOST_LISTED]))}{more}."
 
 
 def likely_items(written: str, items: Sequence[EnumItem], reader: BaseReader) -> list[str]:

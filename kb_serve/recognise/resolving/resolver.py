@@ -29,6 +29,9 @@ if TYPE_CHECKING:
     from kb_serve.recognise.resolving.chains import Chain
 
 _OBJECT_DATA = f"{TYPES}Object.data"
+_DATA_OF = {
+    f"{TYPES}Scene.camera": f"{TYPES}Camera"
+}  # pointer to an object → the class of that object's data
 # What every class and instance tells of itself, and what that is.
 _RNA, _STRUCT_OF_ALL = ("bl_rna", "rna_type"), f"{TYPES}Struct"
 _MATRIX, _ROW = "mathutils.Matrix", "mathutils.Vector"
@@ -187,6 +190,7 @@ class Resolver:
                 return ResolvedChain(tuple(symbols), missing, owner, steps_left=left, owners=owners)
             if data and following[0].symbol == _OBJECT_DATA:
                 following, data = [replace(following[0], cls=data)], ""
+            data = _DATA_OF.get(following[0].symbol, data)
             first = following[0].symbol
             alike = tuple(dict.fromkeys(after.symbol for after in following if after.symbol != first))
             values = following

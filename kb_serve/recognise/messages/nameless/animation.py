@@ -14,6 +14,29 @@ ANIMATION = (
         "bpy.ops.constraint.followpath_path_animate(constraint=con.name)`.",
     ),
     NamelessMessage(
+        ("Could not find constraint data for Child-Of",),
+        ("bpy.ops.constraint.childof_set_inverse", f"{T}ChildOfConstraint.inverse_matrix"),
+        "The operator looks for a constraint of that name on the active object, with `owner='BONE'` on the active pose "
+        "bone: `with bpy.context.temp_override(active_object=rig, object=rig, active_pose_bone=bone): "
+        "bpy.ops.constraint.childof_set_inverse(constraint=con.name, owner='BONE')`.",
+    ),
+    NamelessMessage(
+        ("A layer may not have more than one strip",),
+        (f"{T}ActionLayer.strips", f"{T}ActionStrips.new"),
+        "The layer has its strip already: take `layer.strips[0]`.",
+    ),
+    NamelessMessage(
+        ("An Action may not have more than one layer",),
+        (f"{T}Action.layers", f"{T}ActionLayers.new"),
+        "The action has its layer already: take `action.layers[0]`.",
+    ),
+    NamelessMessage(
+        ("UnicodeDecodeError", "codec can't decode byte"),
+        (f"{T}EditBone.name", f"{T}ArmatureEditBones"),
+        "Where no file is read, it is a name of what was freed: of an edit bone after Edit Mode was left, or after "
+        "undo. Keep the name (`name = bone.name`) before, and look it up again.",
+    ),
+    NamelessMessage(
         ("No active pose bone to add a constraint to",),
         ("bpy.ops.pose.constraint_add", f"{T}ArmatureBones.active"),
         'Make a bone active before: `armature.bones.active = armature.bones["Bone"]`. A script needs no active bone: '
