@@ -37,6 +37,15 @@ if TYPE_CHECKING:
 
 _EXCERPT_TOKENS = 300  # of the best of several candidates
 _LEAST_SAID = 30
+# What is said of a call → how else it is said.
+_SAID_OF_A_CALL = {
+    "takes no arguments by place": "`{path}` takes no arguments",
+    "takes its arguments by name only.": "`{path}` takes no properties by place",
+    "is a whole number": "`{path}({name})` takes an int",
+}
+_OF_A_CALL = re.compile(
+    rf"(?:`(?P<name>\w+)` of )?`(?P<path>[\w.]+)` (?P<what>{'|'.join(map(re.escape, _SAID_OF_A_CALL))})"
+)
 _KNOWN_OF = 3  # hits for a description among which what one has to know of them is looked for
 _NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
 _SETTINGS = 2  # of a topic that are hits before its classes
@@ -100,7 +109,7 @@ class AnswerComposer:
         hits = hits_of(rows, self._reader)
         known = (
             ()
-            if ranking.notes
+            if ranking.notes or told
             else self._known(hits[:1] if ranking.named else hits[:_KNOWN_OF], text, is_named=ranking.named)
         )
         said = (*ranking.notes, *known, ranking.alike, *self._source_notes(ranking, hits))
@@ -278,7 +287,11 @@ def _is_said(note: str, told: Sequence[str]) -> bool:
     """Whether other notes say what a note does, and what to write as well as it does."""
     what, mark, how = note.partition(" by name only")
     same = [other for other in told if mark and f"{what}{mark}" in other]
-    return any(_INSTEAD in other or "=" not in how for other in same)
+    if any(_INSTEAD in other or "=" not in how for other in same):
+        return True
+    found = _OF_A_CALL.match(note)
+    in_other_words = _SAID_OF_A_CALL[found["what"]].format(**found.groupdict()) if found else ""
+    return bool(in_other_words) and any(in_other_words in other for other in told)
 
 
 def _is_told(path: str, text: str) -> bool:

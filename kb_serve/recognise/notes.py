@@ -9,7 +9,7 @@ from kb_build.symbols.api_names import OPERATORS, STRUCT, TYPES, interface_part
 from kb_build.symbols.lines import written
 from kb_build.symbols.paths import as_code, is_socket, last_name, split_path
 from kb_build.symbols.unlisted import OPTIONS, option_of
-from kb_serve.recognise.names.corrections import nearest
+from kb_serve.recognise.names.corrections import names_meant, nearest
 from kb_serve.recognise.names.enum_values import EnumValues
 from kb_serve.recognise.resolving.subscripts import MODIFIER_PROPERTIES, CustomProperties
 
@@ -167,7 +167,7 @@ class Notes:
             elif missing.owner and missing.name not in removed_names:
                 yield f"{_if(missing.variable)}{self._lacks(missing)}{closest}"
         if (doubted := recognition.doubted) and not recognition.removed:
-            names = nearest(doubted.name, self._reader.member_names(doubted.owner))
+            names = nearest(doubted.name, names_meant(doubted.owner, self._reader, called=doubted.called))
             alike = similar or [f"{doubted.owner}.{name}" for name, _ in names]
             closest = f" Closest: {_list(alike)}." if alike else ""
             yield f"{_if(doubted.variable)}{self._lacks(doubted)}{closest}"

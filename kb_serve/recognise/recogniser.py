@@ -5,6 +5,7 @@ enum value or URL. Descriptions are left to the search.
 from __future__ import annotations
 
 import re
+from bisect import bisect
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, tokens
@@ -30,10 +31,11 @@ from kb_serve.recognise.message_patterns import (
 )
 from kb_serve.recognise.messages.messages import Messages
 from kb_serve.recognise.names.addresses import ids_in_urls
-from kb_serve.recognise.names.corrections import Corrector, by_first_word, nearest, shortened
+from kb_serve.recognise.names.corrections import Corrector, by_first_word, names_meant, nearest, shortened
 from kb_serve.recognise.names.enum_values import EnumValues
 from kb_serve.recognise.names.holders import by_what_holds_it
 from kb_serve.recognise.names.inputs_meant import input_meant
+from kb_serve.recognise.names.meant_elsewhere import meant_elsewhere
 from kb_serve.recognise.names.members_within import members_within
 from kb_serve.recognise.names.operator_words import OperatorWords
 from kb_serve.recognise.names.said_otherwise import said_otherwise
@@ -59,7 +61,6 @@ if TYPE_CHECKING:
 # What the panels of render engines name engines by, whether this Blender has them or not: none is set.
 _FOR_ENGINES = re.compile(r"\bCOMPAT_ENGINES\s*=\s*[{(\[][^})\]]*")
 _FEW_OWN = 2  # properties of a class that is asked for one which it lacks
-_LIKE_DICTIONARIES = frozenset({"get", "items", "keys", "pop", "values"})
 # In which classes are that scripts import by name.
 _PACKAGES = (TYPES, "mathutils.", "bmesh.types.")
 _FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n/]*/[^'"\n]*\1""")
@@ -93,12 +94,14 @@ _GUESSES = _OF_STRINGS | {"name", "label", "title", "on the way"}
 def _outside_of_paths(text: str) -> list[Chain]:
     """The chains of a text but for those in the paths of files: ``wood.png`` of ``"//textures/wood.png"``."""
     paths = [match.span() for match in _FILE_PATH.finditer(text)]
+    begins = [begin for begin, _ in paths]
     found: list[Chain] = []
     end = 0
     for chain in find_chains(text):
         start = text.find(chain.source, end)
         end = start + len(chain.source)
-        if not any(first < start < last for first, last in paths):
+        before = bisect(begins, start) - 1
+        if before < 0 or start >= paths[before][1]:
             found.append(chain)
     return found
 
@@ -343,16 +346,16 @@ class Recogniser:
             if missing.name not in removed:
                 self._explain_name(missing, recognition)
         if (doubted := recognition.doubted) and not recognition.removed:
-            self._as_input(doubted, recognition)
+            self._meant(doubted, recognition)
 
     def _explain_name(self, missing: MissingName, recognition: Recognition) -> None:
         """Adds similar members of the class that lacks a name, or the name on other classes, or the class."""
-        if self._as_input(missing, recognition):
+        if self._meant(missing, recognition):
             return
         for place, path in enumerate(self._operators.having(missing.owner, missing.name)):
             recognition.add(path, 0.95 - 0.01 * place, SIMILAR)
         otherwise = said_otherwise(missing, self._operators, self._reader)
-        names = self._names_of(missing)
+        names = names_meant(missing.owner, self._reader, called=missing.called)
         similar = nearest(missing.name, names)
         is_spelled_alike = bool(similar) and similar[0][1] >= _SPELLED_ALIKE
         if not is_spelled_alike and self._held(missing, otherwise, recognition):
@@ -377,12 +380,14 @@ class Recogniser:
         if self._reader.entry(missing.owner) and not similar and not otherwise:
             self._like_nothing(missing, names, recognition)
 
-    def _names_of(self, missing: MissingName) -> list[str]:
-        """What the class has that lacks a name. What all classes have, to be read like dictionaries, nobody means who
-        reads a ``value``.
-        """
-        names = self._reader.member_names(missing.owner) if missing.owner else []
-        return names if missing.called else [name for name in names if name not in _LIKE_DICTIONARIES]
+    def _meant(self, missing: MissingName, recognition: Recognition) -> bool:
+        """Adds what something near the class has that lacks a name, or the input of that name; whether there is any."""
+        meant = meant_elsewhere(missing.owner, missing.name, self._reader)
+        if meant is None:
+            return self._as_input(missing, recognition)
+        recognition.add(meant.path, _WITHIN if missing.told else _HELD_PERHAPS, "within")
+        recognition.notes.append(meant.how)
+        return True
 
     def _as_input(self, missing: MissingName, recognition: Recognition) -> bool:
         """Adds the input of a node that is called as what it, or what is made of it, lacks; whether there is one."""

@@ -31,9 +31,9 @@ _BRACKET = re.compile(r"([()])")
 _FROM_BESIDE = re.compile(
     r"\bfrom\s+\.[\w.]*\s+import\s+\(?\s*((?:\w+(?:\s+as\s+\w+)?\s*,\s*)*\w+(?:\s+as\s+\w+)?)"
 )
-_IMPORTED = re.compile(r"\bimport\s+(\w+)[\w.]*\s+as\s+(\w+)")
+_IMPORTED = re.compile(r"\bimport\s+(\w+)(?:\.\w+)*\s+as\s+(\w+)")
 _IMPORTED_FROM = re.compile(
-    r"\bfrom\s+(?P<module>\w+)[\w.]*\s+import\s+\(?\s*"
+    r"\bfrom\s+(?P<module>\w+)(?:\.\w+)*\s+import\s+\(?\s*"
     r"(?P<names>(?:\w+(?:\s+as\s+\w+)?\s*,\s*)*\w+(?:\s+as\s+\w+)?)"
 )
 # A class that has no class of Blender's above it, as far as its head tells.

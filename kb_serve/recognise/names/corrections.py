@@ -30,6 +30,7 @@ _FEW_BEGIN_SO, _FIRST_WORD = 3, 4  # names with the first word of one, and the l
 _WORD = 3  # letters from which on a word says something
 _UNDOES = ("dis", "un")  # how words begin that undo others; what selects deselects as well
 _TYPO = 0.8  # similarity of a whole name from which on it may be misspelt
+_LIKE_DICTIONARIES = frozenset({"get", "items", "keys", "pop", "values"})
 _TYPO_ACROSS_WORDS = 0.88  # … where it has more or fewer words
 _TYPO_IN_WORD = 0.6  # … and of each of its words
 
@@ -214,7 +215,7 @@ class Corrector:
         for _ in range(_ROUNDS):
             if not readings or readings[0].complete:
                 break
-            found = self._misspelt(readings)
+            found = self._misspelt(chain, readings)
             if found is None:
                 return None
             correction, place = found
@@ -225,7 +226,7 @@ class Corrector:
             return readings[0], corrections
         return None
 
-    def _misspelt(self, readings: Sequence[ResolvedChain]) -> tuple[Correction, int] | None:
+    def _misspelt(self, chain: Chain, readings: Sequence[ResolvedChain]) -> tuple[Correction, int] | None:
         """The name that the first reading lacks, corrected, or else one that another lacks which leads as far; and how
         many steps there are from it on.
         """
@@ -234,10 +235,22 @@ class Corrector:
                 break
             if resolved.fit < USUAL <= readings[0].fit:
                 continue  # what scripts call so lacks it
-            for name, alike in nearest(resolved.missing, self._reader.member_names(resolved.owner), 1):
+            behind = chain.steps[len(chain.steps) - resolved.steps_left + 1 :]
+            names = names_meant(
+                resolved.owner, self._reader, called=bool(behind) and behind[0].kind == "call"
+            )
+            for name, alike in nearest(resolved.missing, names, 1):
                 if is_misspelling(resolved.missing, name, self._names.words):
                     return Correction(resolved.missing, name, alike), resolved.steps_left
         return None
+
+
+def names_meant(owner: str, reader: BaseReader, *, called: bool) -> list[str]:
+    """What a class has that may be meant by a name that it lacks. What all classes have, to be read like dictionaries,
+    nobody means who reads a ``value`` and does not call it.
+    """
+    names = reader.member_names(owner) if owner else []
+    return names if called else [name for name in names if name not in _LIKE_DICTIONARIES]
 
 
 def _closest(

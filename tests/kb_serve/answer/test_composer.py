@@ -265,3 +265,16 @@ def test_the_code_of_a_query_is_checked_once_for_all_parts_of_its_answer(kb: Kno
     assert first.text.startswith("> Blender refuses it.")
     assert first.notes == second.notes
     assert not second.text.startswith(">")
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "sc.frame_set(1.5)",
+        "bpy.ops.wm.open_mainfile('a.blend')",
+        "layout.box(True)",
+        "d = ob.driver_add('location', 0).driver\nv = d.variables.new('var')",
+    ],
+)
+def test_what_is_wrong_with_a_call_is_said_once(kb: KnowledgeBase, code: str) -> None:
+    assert len(kb.query(code).notes) == 1
