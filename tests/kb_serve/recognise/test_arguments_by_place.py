@@ -92,7 +92,8 @@ def test_the_signature_shows_what_is_given_by_name_only(kb: KnowledgeBase) -> No
 
 def test_a_point_alone_is_no_fraction(kb: KnowledgeBase) -> None:
     assert not any("whole number" in note for note in kb.query("scene.frame_set(.)").notes)
-    assert any("`bpy.types.Scene.frame_set(frame)` takes an int" in note for note in kb.query("scene.frame_set(.5)").notes)
+    notes = kb.query("scene.frame_set(.5)").notes
+    assert any("`bpy.types.Scene.frame_set(frame)` takes an int" in note for note in notes)
 
 
 def test_an_argument_is_not_meant_for_what_takes_another_type(kb: KnowledgeBase) -> None:
