@@ -542,6 +542,14 @@ class BaseReader:
         """(class, what makes it) of the classes of which a call makes an instance with this choice."""
         return self.rows("SELECT path, maker FROM creation WHERE choice = ? ORDER BY path", choice)
 
+    def class_made(self, function: str, result: str, choice: str) -> str:
+        """The class of which a function makes an instance with a choice, or else another one that gives the same
+        ``result``, a class, as bones take the constraints of objects; empty for none.
+        """
+        makers = self.made_by_choice(choice)
+        own = next((cls for cls, maker in makers if maker == function), "")
+        return own or next((cls for cls, _ in makers if result and self.descends(cls, result)), "")
+
     def operators_taking(self, argument: str) -> list[str]:
         """Paths of the operators with an argument of that name."""
         sql = "SELECT path FROM operator_arguments JOIN symbols ON id = operator WHERE argument = ? ORDER BY path"

@@ -26,20 +26,8 @@ def made_with(
         return
     for argument, each in values.items():
         for value in sorted(each):
-            if cls := _class_made(function, result, value.strip("'"), reader):
+            if cls := reader.class_made(function.path, TYPES + result, value.strip("'")):
                 yield _block(f"{argument}={value}", cls, reader)
-
-
-def _class_made(function: Symbol, result: str, choice: str, reader: BaseReader) -> str:
-    """The class that a choice stands for: of this function, or of another one with the same result; empty for none."""
-    makers = reader.made_by_choice(choice)
-    for cls, maker in makers:
-        if maker == function.path:
-            return cls
-    for cls, _ in makers:
-        if reader.descends(cls, TYPES + result):
-            return cls
-    return ""
 
 
 def _block(given: str, cls: str, reader: BaseReader) -> AnswerBlock:

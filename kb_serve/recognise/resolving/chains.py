@@ -28,7 +28,7 @@ _LITERAL = re.compile(
     rf"\s*=\s*(True|False|None|{_NUMBER}|\(\s*{_NUMBER}\s*(?:,\s*{_NUMBER}\s*)+,?\s*\))"
     r"(?![\w.(\[]|\s*(?:[-+*/%@|&^<>!=,]|(?:and|or|in|is|not|if)\b))"
 )
-_ITEM = re.compile(r"""(["'])(\w[\w. -]{0,60})\1""")
+_ITEM = re.compile(r"""(["'])([-+]?\w[\w. -]{0,60})\1""")
 _SOCKETS = re.compile(r"\.(?:in|out)puts\[['\"]")
 _QUOTES = ("'", '"')
 _BEFORE = 12  # characters that are looked at before a name, for what defines it

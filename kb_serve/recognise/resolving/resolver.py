@@ -399,13 +399,12 @@ class Resolver:
         entry = self._reader.entry(value.symbol)
         if entry is None or entry.kind != "function":
             return value
+        returned = self._values.returned(value.symbol)
         for _, choice in _QUOTED.findall(arguments):
             # A former name makes what has the name of today.
             today = last_name(self._reader.still_works(f"{TYPES}{choice}")) or choice
-            for cls, maker in self._reader.made_by_choice(today):
-                if maker == value.symbol:
-                    return ChainValue(value.symbol, cls)
-        returned = self._values.returned(value.symbol)
+            if made := self._reader.class_made(value.symbol, returned, today):
+                return ChainValue(value.symbol, made)
         if returned == PROPERTIES_OF_OPERATORS and (operator := self._operator_in(arguments)):
             return ChainValue(value.symbol, operator)
         if value.container and returned and self._reader.descends(value.container, returned):

@@ -95,3 +95,10 @@ def test_what_is_named_comes_before_what_it_holds_and_what_resembles_it(
     query: str, meant: str, kb: KnowledgeBase
 ) -> None:
     assert kb.query(query).hits[0].id == meant
+
+
+def test_a_constraint_of_a_bone_is_of_the_class_that_it_is_made_as(kb: KnowledgeBase) -> None:
+    answer = kb.query("c = pb.constraints.new('DAMPED_TRACK')\nc.track_axis = '-Z'")
+    assert answer.hits[0].id == f"{T}DampedTrackConstraint.track_axis"
+    (note,) = answer.notes
+    assert note.endswith("Closest: `'TRACK_NEGATIVE_Z'`.")
