@@ -7,13 +7,15 @@ import random
 import re
 import tempfile
 import time
-from contextlib import ExitStack, closing
+from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from unittest import mock
 
 from bench.markdown_tables import Table
+from kb_build import store
+from kb_build.index.query_expansions import load_query_expansions
 from kb_build.pipeline import BuildOptions, build
 from kb_serve.answer.budget import tokens
 from kb_serve.knowledge_base import KnowledgeBase
@@ -24,7 +26,7 @@ from measurements.report import ReportPart, TargetFigure
 from measurements.setting import corpora, percentile, say
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Generator, Iterator, Sequence
 
     from kb_serve.answer.docs_answer import DocsAnswer
     from measurements.setting import Setting
@@ -176,8 +178,22 @@ def _base_without_expansions(base: Path, home: Path, folder: Path) -> Path:
     with closing(BaseReader(base)) as reader:
         version = reader.meta["blender"]
     options = BuildOptions(corpora=corpora(), offline=True, output=folder / base.name)
-    with mock.patch("kb_build.store.query_expansions", return_value={}):
+    with without_expansions():
         return build(version, options=options, home=home).path
+
+
+@contextmanager
+def without_expansions() -> Generator[None]:
+    """The store finds no query expansions while this lasts; what symbols weigh by them stays."""
+
+    def weighing(*, plain: bool = True) -> dict[str, str]:
+        return {} if plain else load_query_expansions(plain=False)
+
+    with (
+        mock.patch.object(store, "load_query_expansions", weighing),
+        mock.patch.object(store, "page_expansions", return_value={}),
+    ):
+        yield
 
 
 def compared(base: Path, home: Path, *, quick: bool) -> Iterator[tuple[str, Callable[[str], Sequence[str]]]]:
