@@ -28,12 +28,10 @@ _OF_PYTHON = re.compile(
 _WORD = re.compile(r"\w+")
 _CALLED = re.compile(r"(\w+)\(")
 _BRACKET = re.compile(r"([()])")
-_FROM_BESIDE = re.compile(
-    r"\bfrom\s+\.[\w.]*\s+import\s+\(?\s*((?:\w+(?:\s+as\s+\w+)?\s*,\s*)*\w+(?:\s+as\s+\w+)?)"
-)
 _IMPORTED = re.compile(r"\bimport\s+(\w+)(?:\.\w+)*\s+as\s+(\w+)")
+# A module beside the code's own is not named.
 _IMPORTED_FROM = re.compile(
-    r"\bfrom\s+(?P<module>\w+)(?:\.\w+)*\s+import\s+\(?\s*"
+    r"\bfrom\s+(?:\.[\w.]*|(?P<module>\w+)(?:\.\w+)*)\s+import\s+\(?\s*"
     r"(?P<names>(?:\w+(?:\s+as\s+\w+)?\s*,\s*)*\w+(?:\s+as\s+\w+)?)"
 )
 # A class that has no class of Blender's above it, as far as its head tells.
@@ -95,7 +93,7 @@ def own_names(text: str, is_of_blender: Callable[[str], bool]) -> OwnNames:
         if one["type"] and not any(map(is_of_blender, _WORD.findall(one["type"])))
     )
     return OwnNames(
-        frozenset((*classes, *variables, *others, *_from_beside(text), *_imported(text, is_of_blender))),
+        frozenset((*classes, *variables, *others, *_imported(text, is_of_blender))),
         frozenset(one["name"] for one in given),
         frozenset(properties),
         frozenset(f"{OPERATORS}{match['module']}.{match['name']}" for match in _OPERATOR.finditer(text)),
@@ -126,19 +124,13 @@ def _outside_brackets(text: str) -> str:
     return "".join(kept)
 
 
-def _from_beside(text: str) -> Iterator[str]:
-    """The names that are imported from modules beside the code's own."""
-    for match in _FROM_BESIDE.finditer(text):
-        yield from (name.split()[-1] for name in match[1].split(","))
-
-
 def _imported(text: str, is_of_blender: Callable[[str], bool]) -> Iterator[str]:
-    """The names under which modules that are none of Blender's are imported, or what is in them."""
+    """The names under which modules that are none of Blender's are imported, or what is in these or beside the code."""
     for match in _IMPORTED.finditer(text):
         if not is_of_blender(match[1]):
             yield from match.groups()
     for match in _IMPORTED_FROM.finditer(text):
-        if not is_of_blender(match["module"]):
+        if not match["module"] or not is_of_blender(match["module"]):
             yield from (name.split()[-1] for name in match["names"].split(","))
 
 

@@ -29,9 +29,8 @@ if TYPE_CHECKING:
     from kb_serve.recognise.resolving.chains import Chain
 
 _OBJECT_DATA = f"{TYPES}Object.data"
-_DATA_OF = {
-    f"{TYPES}Scene.camera": f"{TYPES}Camera"
-}  # pointer to an object → the class of that object's data
+# Pointer to an object → the class of that object's data.
+_DATA_OF = {f"{TYPES}Scene.camera": f"{TYPES}Camera"}
 # What every class and instance tells of itself, and what that is.
 _RNA, _STRUCT_OF_ALL = ("bl_rna", "rna_type"), f"{TYPES}Struct"
 _MATRIX, _ROW = "mathutils.Matrix", "mathutils.Vector"
