@@ -45,6 +45,7 @@ from kb_check.documented import (
     none_misfit,
 )
 from kb_check.literals import items, number, written
+from kb_check.mathutils_sizes import in_words, size_of
 from kb_check.misfits import Misfit, describe, shown
 
 if TYPE_CHECKING:
@@ -166,6 +167,8 @@ def _array_misfit(script: Script, taker: Taker, node: ast.expr, sizes: tuple[int
             inner = (_array_misfit(script, taker, part, sizes[1:]) for part in parts)
             return next((Misfit(takes, f"items that are {one.given}") for one in inner if one), None)
         return next((found for part in parts if (found := _item_misfit(script, taker, part, takes))), None)
+    if not changing and (size := size_of(script, node)) and size != sizes:
+        return Misfit(takes, in_words(size), size[0])
     kind = script.type_of(node)
     if kind is None:
         return None

@@ -22,6 +22,7 @@ from kb_build.flow.types import (
     members,
     without_none,
 )
+from kb_build.symbols.api_names import STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import last_name
 from kb_check.calls import calls_by_node
@@ -50,7 +51,9 @@ _CLASS = re.compile(r"type(\[.*\])?")  # of what takes a class itself
 _DECLARING = "bpy.props."  # has a rule of its own
 _IN_C = ("bmesh.", "mathutils.", "gpu.", "imbuf.", T)
 # Where a number or a text is one: functions in C.
-_CONVERT_NOTHING = ("aud.", "bl_math.", "blf.", "bmesh.", "bpy.utils.units.", "gpu.", "imbuf.", "mathutils.")
+_CONVERT_NOTHING = (
+    "aud.", "bl_math.", "blf.", "bmesh.", f"{STRUCT}.", "bpy.utils.units.", "gpu.", "imbuf.", "mathutils.",
+)  # fmt: skip
 _ANYTHING = frozenset({f"{T}AnyType", f"{T}Property", f"{T}Struct"})
 _NUMBERS = frozenset({"bool", "int", "float"})
 _TRUTH = frozenset({"bool", "int"})

@@ -159,3 +159,13 @@ def are_refused(sign: str, left: Size, right: Size) -> bool:
             return count not in ({3, 4} if long == _MOST else {long})
         case _:
             return left != right
+
+
+def in_words(size: Size) -> str:
+    """``a vector of 3 components``, ``a matrix of 4 × 4``."""
+    return f"a vector of {size[0]} components" if len(size) == 1 else f"a matrix of {counted(size)}"
+
+
+def counted(size: Size) -> str:
+    """``4 × 4``."""
+    return " × ".join(map(str, size))

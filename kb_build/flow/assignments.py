@@ -78,7 +78,8 @@ class Assignments(Guards, Annotations):
         """Reads ``name += value``."""
         right = self.evaluate(node.value)
         before = self.evaluate(node.target)
-        if isinstance(node.op, (ast.Mult, ast.MatMult)) and is_math(before) and is_math(right):
+        is_list = isinstance(before, (Sequence, Tuple))  # which takes in the components
+        if (is_math(before) or is_math(right)) and not is_list:
             before = self.operation(node, before, right)
         if isinstance(node.target, ast.Name):
             grown = isinstance(before, (Sequence, Tuple)) and isinstance(right, (Sequence, Tuple))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
 from kb_build.flow.doubts import NO_DOUBTS, without
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE, SUMS
+from kb_build.flow.facts import COMPUTED, COMPUTED_IN_PLACE, DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import chain_text, item_text
 from kb_build.flow.trees import children
@@ -70,7 +70,9 @@ _MATH = frozenset(
     {"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion", "mathutils.Matrix"}
 )
 _VECTOR = "mathutils.Vector"
-_SUMS: dict[type[ast.operator], str] = {ast.Add: "+", ast.Sub: "-", ast.Div: "/"}
+_SIGNS: dict[type[ast.operator], str] = {
+    ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.MatMult: "@", ast.Div: "/",
+}  # fmt: skip
 _NUMBERS = frozenset({"bool", "int", "float"})
 _DEEPEST_ITEMS = 4  # dictionaries around one whose items are kept: what holds them, does so twice
 _LONGEST_LITERAL = 64
@@ -246,33 +248,21 @@ class Expressions(Members):
         return left
 
     def operation(self, node: ast.BinOp | ast.AugAssign, left: Type, right: Type) -> Type:
-        """What an operation gives; a product that mathutils refuses is recorded."""
+        """What an operation gives; what mathutils refuses to compute is recorded."""
         operator = node.op
-        if isinstance(operator, (ast.Mult, ast.MatMult)) and is_math(left) and is_math(right):
-            sign = "*" if isinstance(operator, ast.Mult) else "@"
-            self.here.resolutions.pop(node, None)
-            assert isinstance(left, Instance)
-            assert isinstance(right, Instance)
-            pair = left.cls, right.cls
-            # In place, the result must be of the same kind.
-            taken = PRODUCTS[sign] if isinstance(node, ast.BinOp) else PRODUCTS["*"]
-            if pair not in taken:
-                self.resolve(node, "product", sign, missing=pair, sure=left.sure and right.sure)
+        sign = _SIGNS.get(type(operator), "")
+        if not sign or not (is_math(left) or is_math(right)):
+            return _operation(left, right, operator)
+        self.here.resolutions.pop(node, None)
+        pair = _operand(left), _operand(right)
+        taken = COMPUTED if isinstance(node, ast.BinOp) else COMPUTED_IN_PLACE
+        if all(pair) and pair not in taken[sign]:
+            sure = all(kind.sure for kind in (left, right) if isinstance(kind, Instance))
+            self.resolve(node, "product" if sign in PRODUCTS else "sum", sign, missing=pair, sure=sure)
+            if sign in PRODUCTS and is_math(left) and is_math(right):
                 if pair not in PRODUCTS["@"]:
                     return UNKNOWN
                 operator = ast.MatMult()  # which is meant
-        elif isinstance(operator, ast.MatMult) and (is_math(left) or is_math(right)):
-            self.here.resolutions.pop(node, None)
-            pair = _operand(left), _operand(right)
-            if all(pair):
-                sure = all(kind.sure for kind in (left, right) if isinstance(kind, Instance))
-                self.resolve(node, "product", "@", missing=pair, sure=sure)
-        elif (sign := _SUMS.get(type(operator), "")) and (is_math(left) or is_math(right)):
-            self.here.resolutions.pop(node, None)
-            pair = _operand(left), _operand(right)
-            if all(pair) and pair not in SUMS[sign]:
-                sure = all(kind.sure for kind in (left, right) if isinstance(kind, Instance))
-                self.resolve(node, "sum", sign, missing=pair, sure=sure)
         return _operation(left, right, operator)
 
     def _unary(self, node: ast.UnaryOp) -> Type:
@@ -636,7 +626,7 @@ def is_math(kind: Type) -> bool:
 
 
 def _operand(kind: Type) -> str:
-    """What a value is in a sum of mathutils': a class, ``number``, or what no sum takes; empty if it may be any."""
+    """What a value is to mathutils: a class, ``number``, or what it never computes with; empty if it may be any."""
     if isinstance(kind, Plain):
         return "number" if kind.kind in _NUMBERS else kind.kind
     if isinstance(kind, Tuple):

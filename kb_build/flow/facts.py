@@ -161,24 +161,22 @@ PARAMETERS = {
     "driver": "Driver", "col": "UILayout", "row": "UILayout", "box": "UILayout", "addon_prefs": "AddonPreferences",
 }  # fmt: skip
 
-# What mathutils multiplies, of two of its own values, by each operator; it refuses the other pairs.
-_BY_ITEM = frozenset(
-    (f"mathutils.{name}", f"mathutils.{name}") for name in ("Matrix", "Quaternion", "Vector")
-)
+# What mathutils computes of two values, one of its own among them; it refuses the other pairs, tuples among them.
+_NUMBER = "number"
+_BY_ITEM = frozenset((f"mathutils.{name}",) * 2 for name in ("Matrix", "Quaternion", "Vector"))
+_SCALED = frozenset(f"mathutils.{name}" for name in ("Color", "Matrix", "Quaternion", "Vector"))
+_ADDED = frozenset((cls, cls) for cls in _SCALED)
+_DIVIDED = frozenset({("mathutils.Vector", _NUMBER), ("mathutils.Color", _NUMBER)})
 PRODUCTS = {
-    "*": _BY_ITEM,
+    "*": _BY_ITEM | {(cls, _NUMBER) for cls in _SCALED} | {(_NUMBER, cls) for cls in _SCALED},
     "@": _BY_ITEM | {
         ("mathutils.Matrix", "mathutils.Vector"), ("mathutils.Vector", "mathutils.Matrix"),
         ("mathutils.Quaternion", "mathutils.Vector"),
     },
 }  # fmt: skip
-
-# What mathutils adds, subtracts and divides; it refuses the other pairs, tuples among them.
-_ADDED = frozenset((f"mathutils.{name}",) * 2 for name in ("Color", "Matrix", "Quaternion", "Vector"))
-SUMS = {
-    "+": _ADDED, "-": _ADDED,
-    "/": frozenset({("mathutils.Vector", "number"), ("mathutils.Color", "number")}),
-}  # fmt: skip
+COMPUTED = {**PRODUCTS, "+": _ADDED, "-": _ADDED, "/": _DIVIDED}
+# The same in place, where the result must be of the same class.
+COMPUTED_IN_PLACE = {**COMPUTED, "@": _BY_ITEM - {("mathutils.Vector", "mathutils.Vector")}}
 
 # Members whose value has the class of what they are read from, though they are declared wider.
 SAME_CLASS = frozenset(

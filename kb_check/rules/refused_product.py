@@ -6,8 +6,10 @@ Until 2.79 both were ``*``. A colour is multiplied by a number only, an Euler no
 ```python
 ob.matrix_world * vertex.co  # reported
 ob.matrix_world @ vertex.co
-ob.location + (0, 0, 1)  # reported
-ob.location + Vector((0, 0, 1))
+ob.location += (0, 0, 1)  # reported
+ob.location += Vector((0, 0, 1))
+ob.rotation_euler += (0, 0, 0.5)  # reported
+ob.rotation_euler.z += 0.5
 ```
 
 So is what is computed with None: `matrix.invert() @ vector`, for `matrix.inverted()`.
@@ -42,38 +44,49 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _MATH = frozenset(f"mathutils.{name}" for name in ("Color", "Euler", "Matrix", "Quaternion", "Vector"))
-_SEQUENCE = "a sequence"  # of Python's
+_EULER, _VECTOR = "mathutils.Euler", "mathutils.Vector"
+_SEQUENCE, _NUMBER = "a sequence", "number"  # of Python's
+_OF_EULER = (
+    "An Euler is not computed with: change one of its angles (`euler.z += 0.5`), turn it by `euler.rotate(…)`, or "
+    "take `euler.to_matrix()`."
+)
 _TRANSFORMS = frozenset({"mathutils.Matrix", "mathutils.Quaternion"})
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for row in script.missing("product"):
+    for row in (*script.missing("product"), *script.missing("sum")):
         left, right = row.missing[0], row.missing[-1]
-        is_other = (left, right) in PRODUCTS["@"]
-        advice = "Multiply them with `@`." if is_other else "Convert one of them first."
-        if _SEQUENCE in (left, right):
-            advice = "Make a vector of the sequence: `mathutils.Vector(…)`."
-        if isinstance(row.node, ast.AugAssign):
-            advice = "In place the result must be of the same class."
-            advice += " Write `a = b @ a`." if is_other else ""
+        in_place = isinstance(row.node, ast.AugAssign)
+        is_other = row.value in PRODUCTS and (left, right) in PRODUCTS["@"]
         fix = _fix(script, row.node) if is_other and isinstance(row.node, ast.BinOp) else None
+        sign = f"{row.value}=" if in_place else row.value
+        advice = _advice(str(row.value), left, right, in_place=in_place)
         yield Finding(
-            RULE.id, "error", script.span(row.node), f"`{left} {row.value} {right}` is refused. {advice}",
+            RULE.id, "error", script.span(row.node), f"`{left} {sign} {right}` is refused. {advice}",
             left if left in _MATH else right, (), fix,
-        )  # fmt: skip
-    for row in script.missing("sum"):
-        left, right = row.missing[0], row.missing[-1]
-        advice = "Convert one of them first."
-        if row.value == "/":
-            advice = "Vectors and colors are divided by a number, nothing else is divided."
-        elif _MATH.issuperset({left, right} - {_SEQUENCE}):
-            advice = f"Make one of the other: `{next(cls for cls in (left, right) if cls in _MATH)}(…)`."
-        yield Finding(
-            RULE.id, "error", script.span(row.node), f"`{left} {row.value} {right}` is refused. {advice}",
-            left if left in _MATH else right,
         )  # fmt: skip
     yield from _by_item(script)
     yield from _with_nothing(script)
+
+
+def _advice(sign: str, left: str, right: str, *, in_place: bool) -> str:
+    """What to write instead of what is refused."""
+    pair = {left, right}
+    told = "Convert one of them first."
+    if sign in PRODUCTS and (left, right) in PRODUCTS["@"]:
+        in_full = "In place the result must be of the same class. Write `a = b @ a`."
+        told = in_full if in_place else "Multiply them with `@`."
+    elif _EULER in pair:
+        told = _OF_EULER
+    elif sign == "/":
+        told = "Vectors and colors are divided by a number, nothing else is divided."
+    elif _SEQUENCE in pair:
+        told = f"Make one of the sequence: `{_VECTOR if sign in PRODUCTS else next(iter(pair & _MATH))}(…)`."
+    elif pair == {_VECTOR, _NUMBER}:
+        told = "Add or subtract a vector, or change one component: `.x`, `.y`, `.z`."
+    elif pair <= _MATH and sign not in PRODUCTS:
+        told = f"Make one of the other: `{left}(…)`."
+    return told
 
 
 def _with_nothing(script: Script) -> Iterator[Finding]:

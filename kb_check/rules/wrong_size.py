@@ -24,7 +24,16 @@ from kb_check.buffers import short_buffer
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.literals import number
 from kb_check.made_here import callee_path
-from kb_check.mathutils_sizes import MATRIX, QUATERNION, SIZED, VECTOR, are_refused, size_of
+from kb_check.mathutils_sizes import (
+    MATRIX,
+    QUATERNION,
+    SIZED,
+    VECTOR,
+    are_refused,
+    counted,
+    in_words,
+    size_of,
+)
 from kb_check.rule import Rule
 from kb_check.tried import is_tried
 
@@ -76,7 +85,9 @@ def _operation(
         return None
     first, second = size_of(script, left), size_of(script, right)
     if first and second and are_refused(sign, first, second):
-        told = f"`{sign}` is refused: {_words(first)} does not fit {_words(second)}.{_advice(first, second)}"
+        told = (
+            f"`{sign}` is refused: {in_words(first)} does not fit {in_words(second)}.{_advice(first, second)}"
+        )
         return _finding(script, node, told, fix=_widened(script, left, first, right, second))
     is_turned = sign == "@" and script.class_of(left) == QUATERNION and len(second) == 1
     if is_turned and second != (_SPACE,):
@@ -116,7 +127,7 @@ def _member(script: Script, node: ast.Attribute) -> Finding | None:
             return _finding(script, node, f"A vector of {size[0]} components has no `{lacking[0]}`.")
     if len(size) == 2 and node.attr == "translation" and size != _WHOLE:
         return _finding(
-            script, node, f"{_words(size).capitalize()} has no translation: one of 4 × 4 has.", MATRIX
+            script, node, f"{in_words(size).capitalize()} has no translation: one of 4 × 4 has.", MATRIX
         )
     return None
 
@@ -129,8 +140,8 @@ def _call(script: Script, call: ast.Call) -> Finding | None:
         return None
     size = size_of(script, call.func.value)
     if path in _WANT and size and size not in _WANT[path]:
-        wanted = " or ".join(map(_count, sorted(_WANT[path])))
-        return _finding(script, call, f"`{path}` wants a matrix of {wanted}, not of {_count(size)}.", path)
+        wanted = " or ".join(map(counted, sorted(_WANT[path])))
+        return _finding(script, call, f"`{path}` wants a matrix of {wanted}, not of {counted(size)}.", path)
     other = size_of(script, call.args[0]) if path in _ALIKE and len(call.args) == 1 else ()
     if size and other and (other < size or (path.endswith("cross") and other != size)):
         return _finding(
@@ -159,22 +170,16 @@ def _item(script: Script, node: ast.Subscript) -> Finding | None:
     size = size_of(script, node.value) if isinstance(place, int) else ()
     if not size or not isinstance(place, int) or -size[0] <= place < size[0]:
         return None
-    return _finding(script, node, f"{_words(size).capitalize()} has no item {place}.")
+    return _finding(script, node, f"{in_words(size).capitalize()} has no item {place}.")
 
 
 def _unpacked(script: Script, value: ast.expr, names: list[ast.expr]) -> Finding | None:
     size = size_of(script, value)
     if not size or len(names) == size[0] or any(isinstance(name, ast.Starred) for name in names):
         return None
-    return _finding(script, value, f"{_words(size).capitalize()} cannot be unpacked into {len(names)} names.")
-
-
-def _words(size: Size) -> str:
-    return f"a vector of {size[0]} components" if len(size) == 1 else f"a matrix of {_count(size)}"
-
-
-def _count(size: Size) -> str:
-    return " × ".join(map(str, size))
+    return _finding(
+        script, value, f"{in_words(size).capitalize()} cannot be unpacked into {len(names)} names."
+    )
 
 
 def _finding(

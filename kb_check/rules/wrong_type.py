@@ -10,6 +10,7 @@ material.diffuse_color = (1, 0, 0)  # reported: 4 floats
 scene.camera = bpy.data.cameras.new("Camera")  # reported: an Object that has it
 scene.render.filepath = pathlib.Path("/tmp/x.png")  # reported: str(…)
 bm.from_mesh(ob)  # reported: ob.data
+ob.matrix_world = Matrix.Rotation(1, 3, "Z")  # reported: 4 × 4 floats
 bmesh.ops.translate(bm, vec=(0, 0, 1), verts=faces)  # reported: vertices
 variable.targets[0].id = scene  # reported: variable.targets[0].id_type = "SCENE" comes first
 loop[uv_layer] = (0, 0)  # reported: loop[uv_layer].uv = (0, 0)
@@ -48,6 +49,7 @@ from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.given import assigned, class_values, given_values
 from kb_check.literals import items, set_of
 from kb_check.made_here import is_new, knows_all, named_words, once_bound
+from kb_check.mathutils_sizes import MATRIX
 from kb_check.misfits import describe
 from kb_check.own_properties import given_to_own
 from kb_check.python_paths import is_path
@@ -71,6 +73,8 @@ _HELD = {
 }  # fmt: skip
 _LONGEST_INT = 2**31
 _RGB = 3  # numbers of a colour without alpha
+_TRANSFORM = (4, 4)
+_KEYED_PATH = f"{STRUCT}.keyframe_insert(data_path)"
 _TARGET_ID = f"{T}DriverTarget.id"
 
 
@@ -162,10 +166,17 @@ def _element(owner: Collection) -> str:
 
 
 def _advice(script: Script, taker: Taker, node: ast.expr) -> str:
-    """What may be meant where an object's data, or a node, stand in the place of the object or of a socket."""
+    """What may be meant by what stands in the place of something else."""
+    if taker.path == _KEYED_PATH and isinstance(node, ast.Attribute):
+        return f" Give the name: `{node.attr!r}`."
+    if taker.sizes == _TRANSFORM and script.class_of(node) == MATRIX:
+        return " `.to_4x4()` makes one of it."
     kind = script.type_of(node)
-    if not isinstance(kind, Instance):
-        return ""
+    return _of_another_class(script, taker, kind) if isinstance(kind, Instance) else ""
+
+
+def _of_another_class(script: Script, taker: Taker, kind: Instance) -> str:
+    """What may be meant where an object's data, or a node, stand in the place of the object or of a socket."""
     if taker.target == OBJECT and any(script.api.descends(kind.cls, cls) for cls in (*_DATA, ID)):
         return " Give the object that has it: `bpy.data.objects.new(name, data)` makes one."
     if kind.cls == OBJECT and (taker.target or taker.documented) in _DATA:
