@@ -39,13 +39,13 @@ _FENCED = re.compile(r"^```\w*\n(.*?)^```", re.DOTALL | re.MULTILINE)
 _IMPORTED = ("mathutils", "mathutils.bvhtree", "mathutils.kdtree", "bpy.props")
 _OF_DATA = (TYPES, "mathutils.")
 _INSTANCES = frozenset({"self", "cls"})  # of the script's own classes
-# What is wrong in a piece of a script too, whatever stands around it. Names, keywords, sockets, products and the values
-# of properties are left out: of these an answer tells by itself, as it does of what other Blenders have.
+# What is wrong in a piece of a script too, whatever stands around it. Names, keywords, sockets and the values of
+# properties are left out: of these an answer tells by itself, as it does of what other Blenders have.
 _RULES = (
-    "callback-signature", "crash", "given-callback", "list-attribute", "lost-property", "missing-argument",
+    "callback-signature", "crash", "given-callback", "left-out", "list-attribute", "lost-property", "missing-argument",
     "no-custom-properties", "not-subscriptable", "operator-idname", "positional-argument", "read-only", "refused-call",
-    "refused-path", "refused-property", "refused-value", "unknown-node", "unknown-value", "wrong-count", "wrong-mode",
-    "wrong-size", "wrong-type",
+    "refused-path", "refused-product", "refused-property", "refused-value", "unknown-node", "unknown-value",
+    "wrong-count", "wrong-mode", "wrong-size", "wrong-type",
 )  # fmt: skip
 _NEVER_TRUE = "never-true"  # a warning, as Blender refuses nothing
 _NO_VALUE = "unknown-value"
@@ -55,6 +55,7 @@ _ARGUMENT = "("  # in the path of an argument: of the values of properties an an
 # gone, its successor may take otherwise.
 _NAMES = ("unknown-attribute", "unknown-operator")
 _KEYWORD = "unknown-keyword"
+_PRODUCT = "refused-product"  # an answer tells of those that another sign mends
 _GONE_NAMES = ("unknown-context-member", _KEYWORD, "unknown-name", "unknown-socket")
 _ANIMATED = re.compile(r"\.(?:keyframe|driver)_\w+\(")  # of their paths an answer tells, too
 _OF_CLASS = re.compile(r"\s*bl_\w+\s*=")
@@ -198,7 +199,8 @@ def _news(
         is_value = is_value and _IS_NONE.search(finding.message) is not None
         is_name = finding.rule in _NAMES or bool(finding.absent)
         is_left = is_long and (finding.rule == _KEYWORD or reader.removed(finding.symbol) is not None)
-        is_told = (is_name and not (is_value or is_text or is_left)) or is_behind
+        is_product = finding.rule == _PRODUCT and finding.fix is not None
+        is_told = (is_name and not (is_value or is_text or is_left)) or is_behind or is_product
         is_wrong = finding.severity == "error" or is_value or finding.rule == _NEVER_TRUE
         if is_wrong and span.line > 1 and not is_told:
             yield finding

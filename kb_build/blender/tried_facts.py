@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 from kb_build.blender.call_texts import LEFT_OUT
 from kb_build.blender.enum_contexts import items_in_contexts
 from kb_build.blender.refused_calls import refusals
+from kb_build.symbols.accepted import OUTCOMES, TAKES
 from kb_build.symbols.records import (
+    ACCEPTS,
     ALSO,
     ANY,
     AREAS,
@@ -51,6 +53,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
 
 _Row = dict[str, Any]
+_TREE = "NodeTree"  # any kind of it
 
 
 def add_fact(record: str, row: _Row, seen: Mapping[str, Any]) -> None:
@@ -163,6 +166,14 @@ def _add_refusals(row: _Row, seen: Mapping[str, Any]) -> None:
     row["refusals"] = refusals(seen["outcomes"])
 
 
+def _add_accepted(row: _Row, seen: Mapping[str, Any]) -> None:
+    """Adds what becomes of the things that a pointer was given, by their kind. What takes one kind of tree has that."""
+    _flag(row, (f"{ACCEPTS}{outcome}:{kind}" for outcome in OUTCOMES for kind in seen.get(outcome, ())))
+    taken = seen.get(TAKES, ())
+    if row.get("target") == _TREE and len(taken) == 1:
+        row["target"] = taken[0]
+
+
 def _add_left_out(row: _Row, seen: Mapping[str, Any]) -> None:
     """Adds what an argument is where it is left out, in place of RNA's default. A factor has no unit."""
     for parameter in _parameters(row, seen["argument"]):
@@ -232,6 +243,7 @@ def _written_through(seen: Mapping[str, Any]) -> Iterator[str]:
 
 # Kind of record → what adds it to the row of its symbol.
 _ADDED: dict[str, Callable[[_Row, Mapping[str, Any]], None]] = {
+    "accepted": _add_accepted,
     "argument_items": _add_argument_items,
     "choices": _add_choices,
     "left_out": _add_left_out,

@@ -8,6 +8,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, cast
 
 from kb_build.schema import TEST_ON
+from kb_build.symbols.accepted import fatal_kinds
 from kb_build.symbols.flags import (
     empty_when_new,
     fillers,
@@ -177,6 +178,7 @@ def fatal_lines(symbol: Symbol) -> list[str]:
             else f"where it is set to None{index}"
             for name in symbol.flagged(ENDS_ON_NONE)
         ),
+        *([f"where it is given {kinds}"] if (kinds := fatal_kinds(symbol)) else ()),
         *(f"without `{name}`: give it" for name in symbol.flagged(ENDS_LEFT_OUT)),
         *(["where there is no window"] if ENDS_WINDOWLESS in symbol.flags else ()),
         *(["whatever it is given: do not call it"] if ENDS_EVERY_TIME in symbol.flags else ()),

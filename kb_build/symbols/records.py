@@ -110,6 +110,8 @@ FREE_ON = "free-on:"
 LOCKED_WITH = "locked-with:"
 FREED_BY = "freed-by:"
 ANY = "any"
+# How a flag begins that says what becomes of a kind of thing that a pointer is given: ``takes:MESH`` (see accepted.py).
+ACCEPTS = "accepts:"
 # How a flag begins that names what a class of a script's own must have, or Blender does not register it.
 MUST_HAVE = "must-have:"
 # The flags of functions that such classes define and Blender calls: if they want, and in any case.

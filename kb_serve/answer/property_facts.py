@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.accepted import accepted_text
 from kb_build.symbols.flags import is_locked
 from kb_build.symbols.lines import default_text, locked_text, shown_when, subscripts_text, type_text
 from kb_build.symbols.records import KEEPS_ITEMS, SAME_VALUE, SETS_ALSO, STOPS, UNBOUNDED
@@ -50,8 +51,7 @@ def facts(symbol: Symbol) -> Iterator[str]:
         yield ", ".join(flags)
     if _NEVER_NONE in symbol.flags and symbol.type == "pointer" and not is_locked(symbol):
         yield "cannot be set to `None`"
-    if text := locked_text(symbol):
-        yield text
+    yield from filter(None, (locked_text(symbol), accepted_text(symbol)))
     if others := symbol.flagged(SETS_ALSO):
         yield f"assigning it may change {' and '.join(f'`{other}`' for other in others)}, too"
     if KEEPS_ITEMS in symbol.flags:

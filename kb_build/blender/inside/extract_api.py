@@ -16,6 +16,7 @@ import traceback
 import bpy
 
 from . import (
+    accepted,
     addon_names,
     context,
     crashes,
@@ -108,6 +109,7 @@ def start_beside(_write, found):
             reached_modes.find_all(write)
             windowless.find_all(write)
             crashing_calls.find_all(write)
+            accepted.find_all(write, observer)
 
         found["refusals"] = Beside("refusals", tried)
         found["crashes"] = Beside("crashes", lambda write: crashes.find_all(write, observer))
