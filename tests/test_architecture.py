@@ -93,6 +93,7 @@ RULES = (
             "kb_build.symbols.taken",
             "kb_build.symbols.needs",
             "kb_build.schema",
+            "kb_build.symbols.accepted",
             "kb_build.symbols.flags",
             "kb_build.symbols.lines",
             "kb_build.index.analysis",
@@ -112,6 +113,7 @@ RULES = (
     Rule("kb_build.schema", ("kb_build", "kb_check")),
     Rule("kb_build.symbols.unlisted", ("kb_build", "kb_check")),
     Rule("kb_build.symbols.object_data", ("kb_build", "kb_check")),
+    Rule("kb_build.symbols.accepted", ("kb_build", "kb_check"), ("kb_build.symbols.records",)),
     Rule("kb_build.symbols.math_classes", ("kb_build", "kb_check"), ("kb_build.symbols.records",)),
     Rule("kb_build.symbols.python_values", ("kb_build", "kb_check"), ("kb_build.symbols.records",)),
     # How text is cut into words belongs to the store's schema: index and query must agree on it.
@@ -135,6 +137,7 @@ RULES = (
             "kb_build.symbols.math_classes",
             "kb_build.symbols.python_values",
             "kb_build.symbols.object_data",
+            "kb_build.symbols.accepted",
             "kb_build.symbols.flags",
             "kb_build.symbols.lines",
             "kb_build.symbols.unlisted",

@@ -37,6 +37,7 @@ from kb_build.symbols.records import (
     LOCKED_ON,
     LOCKED_WITH,
     MUST_HAVE,
+    NAMES_PART,
     NONE_ON_SOME,
     NOT_KNOWN,
     REFUSED_ALL,
@@ -183,11 +184,14 @@ def _add_left_out(row: _Row, seen: Mapping[str, Any]) -> None:
 
 
 def _add_limits(row: _Row, seen: Mapping[str, Any]) -> None:
-    """Adds what Blender keeps otherwise than RNA tells: ends of ranges, items taken as others, lengths that vary."""
+    """Adds what Blender keeps otherwise than RNA tells: ends of ranges, items taken as others, lengths that vary, names
+    of nothing else than a part of the object.
+    """
     if seen.get("varies"):
         row["array"] = [0]
         row.pop("default", None)
     _flag(row, (UNBOUNDED + end for end in seen.get("ends", ())))
+    _flag(row, (NAMES_PART + seen["names"],) if seen.get("names") else ())
     _flag(row, (f"{STOPS}{side}={value}" for side, value in seen.get("stops", {}).items()))
     for item in row.get("enum_items", ()):
         if kept := seen.get("read_as", {}).get(item["identifier"]):

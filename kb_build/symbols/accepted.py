@@ -1,4 +1,4 @@
-"""Which things of its class a pointer takes, as tried (see ``kb_build/blender/inside/accepted.py``)."""
+"""Which things of its class a pointer takes, and which names a text, as tried (see ``kb_build/blender/inside``)."""
 
 from __future__ import annotations
 
@@ -39,6 +39,11 @@ def fatal_kinds(symbol: Symbol) -> str:
     """``a tree of type ShaderNodeTree``: what crashes Blender where a pointer is given it; empty for most."""
     kinds = _by_outcome(symbol)[CRASHES]
     return f"a {noun(symbol)} of type {' or '.join(kinds)}" if kinds else ""
+
+
+def part_text(part: str) -> str:
+    """What is told of a text that is left out but where it names a part of its object."""
+    return f"names a {part} that the object has by then: else it stays empty, without an error"
 
 
 def noun(symbol: Symbol) -> str:

@@ -110,6 +110,8 @@ FREE_ON = "free-on:"
 LOCKED_WITH = "locked-with:"
 FREED_BY = "freed-by:"
 ANY = "any"
+# How a flag begins that says which part of its object alone a text may name, and is left out else: ``UV map``.
+NAMES_PART = "names-part:"
 # How a flag begins that says what becomes of a kind of thing that a pointer is given: ``takes:MESH`` (see accepted.py).
 ACCEPTS = "accepts:"
 # How a flag begins that names what a class of a script's own must have, or Blender does not register it.

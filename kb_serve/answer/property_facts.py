@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.accepted import accepted_text
+from kb_build.symbols.accepted import accepted_text, part_text
 from kb_build.symbols.flags import is_locked
 from kb_build.symbols.lines import default_text, locked_text, shown_when, subscripts_text, type_text
-from kb_build.symbols.records import KEEPS_ITEMS, SAME_VALUE, SETS_ALSO, STOPS, UNBOUNDED
+from kb_build.symbols.records import KEEPS_ITEMS, NAMES_PART, SAME_VALUE, SETS_ALSO, STOPS, UNBOUNDED
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -54,6 +54,7 @@ def facts(symbol: Symbol) -> Iterator[str]:
     yield from filter(None, (locked_text(symbol), accepted_text(symbol)))
     if others := symbol.flagged(SETS_ALSO):
         yield f"assigning it may change {' and '.join(f'`{other}`' for other in others)}, too"
+    yield from map(part_text, symbol.flagged(NAMES_PART))
     if KEEPS_ITEMS in symbol.flags:
         yield "given an empty set it keeps what it has"
     for other in symbol.flagged(SAME_VALUE):

@@ -17,6 +17,7 @@ from kb_build.symbols.accepted import (
     accepted_text,
     fatal_kinds,
 )
+from kb_build.symbols.records import NAMES_PART
 
 if TYPE_CHECKING:
     from kb_build.blender.extract_reader import Extract
@@ -138,3 +139,46 @@ def test_what_crashes_blender_is_told_as_that(symbols: dict[str, Symbol]) -> Non
     if CRASHES in accepted(symbol).values():
         assert fatal_kinds(symbol).startswith("a tree of type ")
     assert sum(CRASHES in accepted(each).values() for each in symbols.values()) <= 1
+
+
+def test_texts_that_name_a_part_alone_are_told(
+    symbols: dict[str, Symbol], tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    start = [
+        *_START.splitlines(),
+        'flat = D.meshes.new("f")',
+        "flat.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])",
+        'thing = D.objects.new("thing", flat)',
+        "bpy.context.collection.objects.link(thing)",
+        *(
+            f'{kind} = thing.modifiers.new("n", {kind.upper()!r})'
+            for kind in ("cloth", "wave", "uv_warp", "warp")
+        ),
+        'thing.modifiers.new("n", "PARTICLE_SYSTEM")',
+        'soft = thing.modifiers.new("n", "SOFT_BODY").settings',
+        'camera_track = thing.constraints.new("TRACK_TO")',
+    ]
+    texts = {
+        "ClothSettings.vertex_group_mass": "cloth.settings.vertex_group_mass",
+        "WaveModifier.vertex_group": "wave.vertex_group", "WaveModifier.uv_layer": "wave.uv_layer",
+        "UVWarpModifier.uv_layer": "uv_warp.uv_layer", "WarpModifier.bone_from": "warp.bone_from",
+        "ParticleSystem.vertex_group_density": "thing.particle_systems[0].vertex_group_density",
+        "SoftBodySettings.vertex_group_goal": "soft.vertex_group_goal", "Modifier.name": "wave.name",
+        "TrackToConstraint.subtarget": "camera_track.subtarget", "ID.name": "thing.name",
+    }  # fmt: skip
+    lines = list(start)
+    # Blender 5.1 crashes where a UV map is called like a vertex group.
+    groups = "thing.vertex_groups"
+    with_map = f'{groups}.remove({groups}["Named"]); flat.uv_layers.new(name="Named")'
+    for add in ("None", f'{groups}.new(name="Named")', with_map):
+        lines += [add, *(f'{text} = "Named"' for text in texts.values())]
+    watched = {at: line.partition(" = ")[0] for at, line in enumerate(lines) if line.endswith('= "Named"')}
+    answers = run_statements(tmp_path_factory.mktemp("texts"), lines, watched)
+    assert not any(error for error, *_ in answers)
+    kept = [value == "'Named'" for at, (_, _, value) in enumerate(answers) if at in watched]
+    count = len(texts)
+    for at, name in enumerate(texts):
+        without, with_group, with_map = kept[at], kept[at + count], kept[at + 2 * count]
+        part = "" if without else "vertex group" if with_group else "UV map" if with_map else ""
+        assert "".join(symbols[f"bpy.types.{name}"].flagged(NAMES_PART)) == part
+    assert kept.count(False) > count

@@ -91,3 +91,49 @@ except TypeError:
 """
     found = [one.span.line for one in rule_checker.check(code, rules=["left-out"])]
     assert found == []
+
+
+_CLOTH = """\
+import bpy
+mesh = bpy.data.meshes.new("a")
+mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
+ob = bpy.data.objects.new("a", mesh)
+cloth = ob.modifiers.new("a", "CLOTH")
+wave = ob.modifiers.new("b", "WAVE")
+"""
+
+
+def test_names_of_parts_that_are_made_later_or_never_are_found(rule_checker: Checker, tmp_path: Path) -> None:
+    later = [
+        'cloth.settings.vertex_group_mass = "Pin"', 'wave.uv_layer = "Map"', 'wave.vertex_group = "Pin"',
+        'pin = ob.vertex_groups.new(name="Pin")', 'mesh.uv_layers.new(name="Map")',
+        'cloth.settings.vertex_group_mass = "Pin" ', 'wave.uv_layer = "Map" ',
+    ]  # fmt: skip
+    never = ['cloth.settings.vertex_group_mass = "Pin"', 'wave.vertex_group = "None such"']
+    for lines in (later, never):
+        made = _CLOTH.splitlines()
+        watched = {len(made) + at: line.partition(" = ")[0] for at, line in enumerate(lines)}
+        answers = run_statements(tmp_path, [*made, *lines], watched)
+        assert not any(error for error, *_ in answers)
+        empty = {at for at, (_, _, value) in enumerate(answers[len(made) :]) if value == "''"}
+        findings = rule_checker.check("\n".join([*made, *lines]), rules=["left-out"])
+        assert {one.span.line - len(made) - 1 for one in findings} == empty
+        assert empty
+
+
+def test_names_of_parts_that_may_be_there_are_left_alone(rule_checker: Checker) -> None:
+    code = """\
+import bpy
+ob = bpy.context.object
+wave = ob.modifiers.new("a", "WAVE")
+wave.vertex_group = "Group"
+other = bpy.data.objects.new("b", bpy.data.meshes["Cube"])
+other.modifiers.new("a", "WAVE").uv_layer = "Map"
+for ob in bpy.context.selected_objects:
+    ob.modifiers["Wave"].vertex_group = "Pin"
+    ob.vertex_groups.new(name="Pin")
+PIN = "Top"
+wave.vertex_group = "Top"
+ob.vertex_groups.new(name="Top")
+"""
+    assert rule_checker.check(code, rules=["left-out"]) == []

@@ -2,10 +2,13 @@
 """Finds values that Blender keeps, or does not keep, otherwise than RNA tells.
 
 Numbers outside their range whose setters do not ask for it; numbers that stop before its end, as the rest of the
-instance has it; arrays that are not as long as RNA tells; and items of enumerations that are taken as others. Of one
+instance has it; arrays that are not as long as RNA tells; items of enumerations that are taken as others; and texts
+that are left out but where they name a part of the object, as a cloth's pin group is. Of one
 instance of each class such values are assigned and read again. What a maker makes is tried in a process of its own:
 what extreme values end there is left out.
 """
+
+import bpy
 
 from ..apart import sent_apart
 from ..rna import path_of
@@ -20,6 +23,9 @@ MOST = 2e6  # beyond it a number may take all memory
 PAST = 1  # how far beyond an end is tried
 NEAR = 0.01  # … as a share of the end, and of one: what turns round at a limit of its own takes no more
 FAR = 1000  # assigned where there is no end
+NAME = "part"
+# Parts of an object that a text may name → the collection of them in an object, which some have not.
+PARTS = {"vertex group": lambda obj: obj.vertex_groups, "UV map": lambda obj: obj.data.uv_layers}
 
 
 def read_back(struct, name, value):
@@ -128,6 +134,24 @@ def read_as(struct, prop):
     return found
 
 
+def part_named(struct, name):
+    """The part of its object that a text of an instance names, as it keeps the name of no other; "" for others."""
+    obj = struct.id_data
+    if not isinstance(obj, bpy.types.Object) or read_back(struct, name, NAME) == NAME:
+        return ""
+    for part, collection_of in PARTS.items():
+        try:
+            collection = collection_of(obj)
+            added = collection.new(name=NAME)
+        except Exception:
+            continue  # objects of this type have no such parts
+        is_kept = read_back(struct, name, NAME) == NAME
+        collection.remove(added)
+        if is_kept:
+            return part
+    return ""
+
+
 def has_other_length(struct, prop):
     """Whether an array of an instance is not as long as RNA tells."""
     if prop.array_dimensions[1]:
@@ -142,6 +166,8 @@ def tried(struct, prop):
     """What is told of a property of an instance that can be assigned; {} for nothing."""
     if prop.type == "ENUM":
         found = {} if prop.is_enum_flag else {"read_as": read_as(struct, prop)}
+    elif prop.type == "STRING":
+        found = {"names": part_named(struct, prop.identifier)}
     else:
         found = {"ends": kept_beyond(struct, prop)}
         if prop.identifier not in CHOSEN:
@@ -159,7 +185,11 @@ def look(observer, struct, seen, send):
             if path not in seen and has_other_length(struct, prop):
                 seen.add(path)
                 send({"path": path, "varies": True})
-        elif name in writable and prop.type in {"ENUM", *NUMBERS} and not struct.is_property_readonly(name):
+        elif (
+            name in writable
+            and prop.type in {"ENUM", "STRING", *NUMBERS}
+            and not struct.is_property_readonly(name)
+        ):
             path = writable[name]
             if path not in seen:
                 seen.add(path)
