@@ -143,7 +143,7 @@ def _of_operation(script: Script, node: ast.BinOp, depth: int) -> Size:
         case (count,), (_, _):
             return (count,)
         case _:
-            return left or right
+            return () if isinstance(node.op, ast.MatMult) else left or right
 
 
 def are_refused(sign: str, left: Size, right: Size) -> bool:

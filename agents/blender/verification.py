@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 SNAPSHOT_SECONDS = 60.0
 MEASURE_SECONDS = 600.0
 _LISTED = 4
+_PENETRATION = "V2"  # which looks at a few frames, not at all of them
 
 
 class ScenePosition(Claim):
@@ -68,11 +69,14 @@ def read_measures(count: int, value: Any) -> list[dict[str, Any]]:
     return value
 
 
-def verify_scene(blender: Supervisor, rules: Sequence[Rule], plan: ScenePlan | None, call: Call) -> Report:
+def verify_scene(
+    blender: Supervisor, rules: Sequence[Rule], plan: ScenePlan | None, call: Call, *, plays: bool = False
+) -> Report:
     """Checks the open scene against rules. Raises BlenderError if Blender is lost or cannot give the facts.
 
-    Simulations are stepped through only if a rule follows motion; else the scene is judged at its first frame while
-    any is not baked. A simulation that is not finite is one finding, in place of all that could not be measured.
+    Simulations are stepped through only if a rule follows motion, or if it ``plays`` them; else the scene is judged at
+    its first frame, and where it stands, while any is not baked. A simulation that is not finite is one finding, in
+    place of all that could not be measured.
     """
     diverged: list[_Unanswered] = []
 
@@ -95,14 +99,22 @@ def verify_scene(blender: Supervisor, rules: Sequence[Rule], plan: ScenePlan | N
         "scene_facts", {}, SceneFacts.model_validate, timeout=SNAPSHOT_SECONDS, cancelled=call.cancelled
     ).value
     remarks: tuple[str, ...] = ()
-    if not any(map(_follows_motion, rules)) and (waiting := _unbaked_caches(facts)):
+    if not plays and not any(map(_follows_motion, rules)) and (waiting := _unbaked_caches(facts)):
         facts = facts.model_copy(update={"frame_end": facts.frame_start})
         remarks = (
-            f"Judged at frame {facts.frame_start} only, since no rule here follows motion and these are not baked: "
+            f"Judged at {_frames(facts)} only, since no rule here follows motion and these are not baked: "
             f"{format_list(waiting, _LISTED)}.",
         )
-    report = replace(verify(facts, measure, rules, plan), remarks=remarks)
+    elif facts.caches and any(rule.id == _PENETRATION for rule in rules):
+        remarks = (f"{_PENETRATION} compares meshes at {_frames(facts)} only.",)
+    report = replace(verify(facts, measure, rules, plan, plays=plays), remarks=remarks)
     return _as_one_cause(report, diverged[0]) if diverged else report
+
+
+def _frames(facts: SceneFacts) -> str:
+    """The frames at which what moves is compared, in words."""
+    frames = sorted({facts.frame_start, facts.frame, facts.frame_end})
+    return f"frame{'s' if len(frames) > 1 else ''} {' and '.join(map(str, frames))}"
 
 
 def _unbaked_caches(facts: SceneFacts) -> list[str]:

@@ -142,6 +142,8 @@ def mcp(  # noqa: PLR0913 - one for each option
         )
     if run is not None and _is_foreign(run):
         raise click.UsageError(f"--run: {run} is not empty, and holds no run. Choose another folder.")
+    if run is not None and (fault := _fault_of(run)):
+        raise click.UsageError(f"--run: {run} cannot be made: {fault}.")
     # Nothing that is loaded is garbage, and looking for it would slow the start.
     gc.disable()
     from agents.blender.blender_sessions import SessionSetup  # noqa: PLC0415
@@ -171,6 +173,15 @@ def mcp(  # noqa: PLR0913 - one for each option
     except CannotStart as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)
+
+
+def _fault_of(run: Path) -> str:
+    """Why there can be no such folder; empty if there is one now."""
+    try:
+        run.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        return error.strerror or str(error)
+    return ""
 
 
 def _is_foreign(run: Path) -> bool:

@@ -211,7 +211,7 @@ def _run(
             ).value
             process = blender.inner_pid
             status.show("Measuring")
-            report = verify_scene(blender, rules, plan, call)
+            report = verify_scene(blender, rules, plan, call, plays=True)
             if blender.inner_pid != process:
                 # The new Blender has an empty scene.
                 raise _CannotCheckError(f"{scene} could not be checked: Blender ended while checking it.")

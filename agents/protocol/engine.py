@@ -28,15 +28,18 @@ def verify(
     measure_in_blender: MeasureInBlender,
     rules: Sequence[Rule],
     plan: ScenePlan | None = None,
+    *,
+    plays: bool = False,
 ) -> Report:
     """Judges a scene by ``rules``. A rule that raises, or that cannot measure, gives a finding of its own.
 
-    Raises what ``measure_in_blender`` raises.
+    The last frame of what is not baked is judged if a rule follows motion, or if it ``plays``. Raises what
+    ``measure_in_blender`` raises.
     """
     began = time.perf_counter()
     tolerances, refused = TOLERANCES.tightened(plan.tolerances if plan else {})
     unbaked = any(cache.on and (not cache.baked or cache.outdated) for cache in facts.caches)
-    judges_end = not unbaked or any(rule.follows_motion for rule in rules)
+    judges_end = plays or not unbaked or any(rule.follows_motion for rule in rules)
     context = RuleContext(facts, SceneStructure(facts), tolerances, plan, judges_end)
     findings = [_error("plan", "soft", f"The plan's tolerances: {reason}.") for reason in refused]
     not_applicable: dict[str, str] = {}

@@ -79,7 +79,8 @@ def _measured(results: ResultSet) -> dict[str, dict[str, float]]:
     times: dict[str, dict[str, list[float]]] = {}
     for system in results.systems:
         for name, scene in system.scenes.items():
-            if scene.record.audited is None or scene.record.audited.file is None:
+            audited = scene.record.audited
+            if audited is None or audited.file is None or audited.why is not None:
                 continue
             for step, seconds in _seconds(scene):
                 times.setdefault(name, {}).setdefault(step, []).append(seconds)

@@ -36,6 +36,7 @@ Kind = Literal["executable", "environment", "managed"]
 Report = Callable[[str, int, int | None], None]
 
 _NAME_IT = "give its executable with --blender-exe PATH (or BLENDER_EXE=PATH)"
+_SYSTEM_CERTIFICATES = Path("/etc/ssl/certs/ca-certificates.crt")  # Linux: elsewhere they are no file
 _INSTALL_SECONDS = 1800.0
 _VERSION_SECONDS = 60.0
 _LONGEST_LINE = 200
@@ -250,10 +251,15 @@ def _find_uv() -> str:
 
 
 def _install_environment(python: str) -> dict[str, str]:
-    """Puts pyenv's versions on PATH: uv ignores pyenv's shims, but uses an interpreter that is on PATH."""
+    """Puts pyenv's versions on PATH: uv ignores pyenv's shims, but uses an interpreter that is on PATH.
+
+    Of its own it trusts no certificates of the system, where a company's proxy may be known.
+    """
     dropped = {"VIRTUAL_ENV", "CONDA_PREFIX", "PYTHONPATH", "PYTHONHOME", "ANTHROPIC_API_KEY"}
     environment = {name: value for name, value in os.environ.items() if name not in dropped}
     pyenv = Path(environment.get("PYENV_ROOT") or Path.home() / ".pyenv")
     versions = sorted(str(folder / "bin") for folder in (pyenv / "versions").glob(f"{python}.*"))
+    if _SYSTEM_CERTIFICATES.is_file():
+        environment.setdefault("UV_SYSTEM_CERTS", "1")
     environment["PATH"] = os.pathsep.join([environment.get("PATH", os.defpath), *reversed(versions)])
     return environment

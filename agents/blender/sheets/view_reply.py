@@ -80,8 +80,8 @@ class LitView(DrawnView):
 
 
 class LitObject(Claim):
-    """An object alone in neutral light: its ``materials``, which others are ``alike`` and so not shown, and which of
-    its parts are ``bare``: without a material. ``file`` and ``key`` are as in ``LitView``."""
+    """An object alone in neutral light: its ``materials``, which others are ``alike`` and so not shown, some named and
+    how many, and which of its parts are ``bare``: without a material. ``file`` and ``key`` are as in ``LitView``."""
 
     name: Name
     file: _File | None
@@ -89,6 +89,7 @@ class LitObject(Claim):
     metres_per_pixel: Scale
     materials: list[Name] = Field(max_length=20)
     alike: list[Name] = Field(max_length=20)
+    alike_in_all: Count
     bare: list[Name] = Field(max_length=20)
 
 
@@ -113,6 +114,7 @@ class UvMesh(Claim):
     checker: _File
     map: _File | None
     alike: list[Name] = Field(max_length=8)
+    alike_in_all: Count
     low: tuple[Metres, Metres] = (0.0, 0.0)
     high: tuple[Metres, Metres] = (0.0, 0.0)
     outside: Part = 0.0

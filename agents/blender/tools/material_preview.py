@@ -137,7 +137,11 @@ def _sheet(blender: Supervisor, kept: KeptPictures, shown: MaterialReply) -> Ima
         "Materials",
         [contact_sheet.grid(panels, min(_COLUMNS, len(panels)))],
         subtitle="each object alone, in neutral light",
-        remarks=[f"As {one.name}: {format_list(one.alike, _NAMED)}." for one in shown.objects if one.alike],
+        remarks=[
+            f"As {one.name}: {format_list(one.alike, _NAMED, one.alike_in_all)}."
+            for one in shown.objects
+            if one.alike
+        ],
         notes=shown.notes,
     )
 
@@ -171,7 +175,7 @@ def _line(one: LitObject) -> str:
     if one.bare and one.materials:
         parts.append(f"**without a material**: {format_list(one.bare, _NAMED)}")
     if one.alike:
-        parts.append(f"the same on {format_list(one.alike, _NAMED)}")
+        parts.append(f"the same on {format_list(one.alike, _NAMED, one.alike_in_all)}")
     return "; ".join(parts)
 
 

@@ -93,7 +93,7 @@ def _text(shown: UvReply) -> str:
 
 
 def _line(mesh: UvMesh) -> str:
-    also = f" (also {format_list(mesh.alike, _NAMED)})" if mesh.alike else ""
+    also = f" (also {format_list(mesh.alike, _NAMED, mesh.alike_in_all)})" if mesh.alike else ""
     head = f"- {mesh.name}{also}, {counted(mesh.faces, 'face')}"
     if mesh.missing:
         return f"{head}: **its map has no usable coordinates**"

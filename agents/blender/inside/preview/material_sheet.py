@@ -133,6 +133,7 @@ class _Sheet:
                     "name": name,
                     "materials": _materials_of(owners)[:_LISTED],
                     "alike": others[:_LISTED],
+                    "alike_in_all": len(others),
                     "bare": sorted(owner for owner in owners if not _materials_of({owner}))[:_LISTED],
                 }
             )

@@ -66,7 +66,15 @@ def uv_sheet(arguments, report):
                 report(at, len(once), obj.name)
                 facts, picture = _measured(obj, graph)
                 file, _ = renderer.alone({obj.name}, _THREE_QUARTER[1], arguments["size"])
-                meshes.append({**facts, "checker": file, "map": None, "alike": alike[obj][:_NAMED]})
+                meshes.append(
+                    {
+                        **facts,
+                        "checker": file,
+                        "map": None,
+                        "alike": alike[obj][:_NAMED],
+                        "alike_in_all": len(alike[obj]),
+                    }
+                )
                 if picture is not None:
                     name = _MAP_FILE.format(500 + at)
                     _write_png(os.path.join(arguments["folder"], name), picture)

@@ -20,6 +20,10 @@ if TYPE_CHECKING:
 
 _DECLARE = "or, if they should touch or fit into each other, declare it (contact_with, the plan)"
 _DECLARE_PARTS = "or, if its parts are made to reach into each other, name it in its own contact_with"
+# What has been moved away at the first frame comes back by its motion.
+_BY_MOTION = (
+    "Their motion brings them together: change its settings (margins, steps a frame, applied scales) or paths"
+)
 _NAMED = 6
 _MAX_MOVE = 2.0  # times the depth; where a move along an axis is longer, another way out is shorter
 
@@ -99,7 +103,9 @@ def _finding(context: RuleContext, pair: Crossing, frame: int | None) -> Finding
         return None
     when = f" at frame {frame}" if frame is not None else ""
     fix = V2.fix
-    if frame is None and pair.way is not None and math.hypot(*pair.way) <= _MAX_MOVE * pair.depth:
+    if frame is not None and frame > context.facts.frame_start:
+        fix = f"{_BY_MOTION}; {_DECLARE}."
+    elif frame is None and pair.way is not None and math.hypot(*pair.way) <= _MAX_MOVE * pair.depth:
         first, second = _movable(context, pair.a, pair.b), _movable(context, pair.b, pair.a)
         if move := describe_closing_move(context, first, second, pair.way):
             fix = f"{move}; {_DECLARE}."
@@ -128,7 +134,8 @@ V2 = Rule(
     "penetration",
     "hard",
     "Two meshes that penetrate each other deeper than numerical noise are declared to touch.",
-    "Meshes that penetrate each other flicker, explode in a simulation, and cannot be taken apart.",
+    "Meshes that penetrate each other flicker, explode in a simulation, and cannot be taken apart. Those that move are "
+    "compared at the first frame, at the last one, and at the one that is checked.",
     f"Move them apart; {_DECLARE}.",
     _judge,
     _requests,
