@@ -113,8 +113,8 @@ def verify_scene(
 
 def _frames(facts: SceneFacts) -> str:
     """The frames at which what moves is compared, in words."""
-    frames = sorted({facts.frame_start, facts.frame, facts.frame_end})
-    return f"frame{'s' if len(frames) > 1 else ''} {' and '.join(map(str, frames))}"
+    *others, last = sorted({facts.frame_start, facts.frame, facts.frame_end})
+    return f"frames {', '.join(map(str, others))} and {last}" if others else f"frame {last}"
 
 
 def _unbaked_caches(facts: SceneFacts) -> list[str]:
