@@ -94,13 +94,21 @@ def on_preview(arguments):
 def on_material_sheet(arguments):
     shown = {**view(arguments["folder"], 0, "three-quarter"), "frame": 1, "key": "0" * 32}
     alone = {"name": "Cube", "file": view(arguments["folder"], 1, "x")["file"], "metres_per_pixel": 0.1}
-    alone |= {"key": None, "materials": ["Clay"], "alike": ["Box"], "bare": []}
+    alone |= {"key": None, "materials": ["Clay"], "alike": ["Box"], "alike_in_all": 1, "bare": []}
     return {"title": "Scene", "scene": [shown], "objects": [alone], "notes": ["a note"]}
 
 
 def on_uv_sheet(arguments):
     files = [view(arguments["folder"], number, "x")["file"] for number in (0, 1)]
-    mesh = {"name": "Cube", "uv_map": "UVMap", "maps": 1, "faces": 6, "missing": False, "alike": []}
+    mesh = {
+        "name": "Cube",
+        "uv_map": "UVMap",
+        "maps": 1,
+        "faces": 6,
+        "missing": False,
+        "alike": [],
+        "alike_in_all": 0,
+    }
     mesh |= {"checker": files[0], "map": files[1], "low": [0.0, 0.0], "high": [1.0, 1.0], "scale": [1.0, 1.0]}
     mesh |= {"outside": 0.0, "stretched": 0.1, "collapsed": 0.0, "mirrored": 0.0, "overlap": 0.2}
     return {"title": "Scene", "meshes": [mesh], "without": ["Bare"], "notes": []}
