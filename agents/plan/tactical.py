@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 class Asset(PlanPart):
     """One task of the stage: which object it builds or changes, and what to do."""
 
-    target: Name = Field(description="At most 60 characters.")
+    target: Name
     task: str = Field(min_length=1, max_length=2000)
 
 
