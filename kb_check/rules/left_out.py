@@ -119,10 +119,11 @@ def _of_name(script: Script, one: _Stored) -> str:
         instead = "Make it before." if is_late else ""
     else:
         makes_none = _MAKING_GROUPS.isdisjoint(named_words(script)) and has_plain_operators_only(script)
+        makes_none = makes_none and parts == (_GROUP,)  # a mesh may come with a UV map
         holder = _holder(script, one.target.value)
         is_new_one = holder is not None and has_new_data(script, holder) and knows_all(script)
         instead = f"`obj.vertex_groups.new(name={name!r})` makes it." if makes_none and is_new_one else ""
-    if not instead or (not named and parts != (_GROUP,)):
+    if not instead:
         return ""
     return (
         f"There is no {parts[0]} {name!r} yet: `{one.symbol.path}` stays empty, without an error. {instead}"

@@ -35,6 +35,7 @@ from kb_build.flow.facts import PRODUCTS
 from kb_build.flow.types import Instance
 from kb_check.calls import nothing_from, other_way
 from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.mathutils_sizes import VECTOR
 from kb_check.rule import Rule
 from kb_check.tried import is_tried
 
@@ -44,7 +45,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _MATH = frozenset(f"mathutils.{name}" for name in ("Color", "Euler", "Matrix", "Quaternion", "Vector"))
-_EULER, _VECTOR = "mathutils.Euler", "mathutils.Vector"
+_EULER = "mathutils.Euler"
 _SEQUENCE, _NUMBER = "a sequence", "number"  # of Python's
 _OF_EULER = (
     "An Euler is not computed with: change one of its angles (`euler.z += 0.5`), turn it by `euler.rotate(…)`, or "
@@ -81,8 +82,8 @@ def _advice(sign: str, left: str, right: str, *, in_place: bool) -> str:
     elif sign == "/":
         told = "Vectors and colors are divided by a number, nothing else is divided."
     elif _SEQUENCE in pair:
-        told = f"Make one of the sequence: `{_VECTOR if sign in PRODUCTS else next(iter(pair & _MATH))}(…)`."
-    elif pair == {_VECTOR, _NUMBER}:
+        told = f"Make one of the sequence: `{VECTOR if sign in PRODUCTS else next(iter(pair & _MATH))}(…)`."
+    elif pair == {VECTOR, _NUMBER}:
         told = "Add or subtract a vector, or change one component: `.x`, `.y`, `.z`."
     elif pair <= _MATH and sign not in PRODUCTS:
         told = f"Make one of the other: `{left}(…)`."
