@@ -33,10 +33,11 @@ from agents.loop.events import (
     ToolCalled,
 )
 from agents.loop.interruptible import Interruptible
+from agents.loop.planned_settings import code_of
 from agents.loop.telling_frames import MeasuredMotion
 from agents.loop.tool_client import ToolOutcome
 from agents.loop.withdrawals import as_soft
-from agents.roles import coder, reviewer
+from agents.roles import coder, planner, reviewer
 from agents.roles.base import RoleContext
 from simworlds.files import write_whole
 from simworlds.llm.messages import Picture, Text, ToolResult
@@ -321,8 +322,15 @@ class Run:
         return self.use(RUNNER, stage, "blender_scene_state", asked, known).text
 
     def save(self, stage: Stage, name: str) -> Path:
-        """Saves the scene as the checkpoint ``name``, with its caches beside it. Raises NotSaved."""
+        """Saves the scene as the checkpoint ``name``, with its caches beside it. Raises NotSaved.
+
+        A new scene renders as its plan says from then on, whatever engine, size and samples its coder has left.
+        """
         target = self.checkpoints / f"{name}.blend"
+        if self.task is not None and self.task.plan is not None:
+            planned = self.task.plan.render
+            code = code_of(planned, self.samples or planned.samples)
+            self.use(planner.NAME, stage, "blender_execute", {"code": code})
         self._save(stage, name, target, self.root / "blender" / target.name, is_replaced=False)
         return target
 

@@ -64,7 +64,7 @@ camera.rotation_euler = (Vector((0, 0, 0.25)) - camera.location).to_track_quat("
 system("cameras").objects.link(camera)
 scene.camera = camera
 scene.render.engine = "BLENDER_WORKBENCH"
-scene.render.resolution_x, scene.render.resolution_y = 64, 36
+scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 64, 36, 50
 """
 
 LIGHT = f"""\
