@@ -18,6 +18,7 @@ FIRST_STAGES: dict[str, Stage] = {
     "R19": "motion",
     "T": "motion",
     "R14": "camera",
+    "W6": "camera",
 }
 _LAYOUT_FAMILIES = frozenset("CG")  # they hold only for files that follow the protocol throughout
 

@@ -46,7 +46,7 @@ _TOLD_RULES: dict[Stage, tuple[str, ...]] = {
     "texture": ("R1",),
     "deformation_setup": ("C3", "V", "W3", "R1", "R4", "R15"),
     "motion": ("V", "R7", "R15", "R18", "R19", "T"),
-    "camera": ("W3", "W4", "R14"),
+    "camera": ("W3", "W4", "W6", "R14"),
     "light": ("W3", "W5", "R14"),
     "render": ("V", "R14", "R15", "R19", "T"),
 }

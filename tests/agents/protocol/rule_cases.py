@@ -211,6 +211,17 @@ shape.free()
 """
 VIEW = FLOOR + CHAIR + LAMP + "scene.render.resolution_x, scene.render.resolution_y = 320, 240\n"
 
+POST = 'thing("Post", box("Pole", (-0.12, -0.1, 0), (0.12, 0.1, 0.6), at=({0}, -1, 0)), at=({0}, -1, 0))'
+BALLS = (
+    FLOOR
+    + LAMP
+    + """
+scene.render.resolution_x, scene.render.resolution_y, scene.frame_end = 320, 240, 20
+camera((0, -3, 0.4), (0, 0, 0.15), lens=60)
+for name, x in (("Cue", -0.15), ("Eight", 0.15)):
+    thing(name, ball(name + " ball", 0.15, at=(x, 0, 0.15)), at=(x, 0, 0))
+"""
+)
 PLANNED: dict[str, Case] = {
     "R1": Case(
         TABLE,
@@ -341,6 +352,19 @@ PLANNED: dict[str, Case] = {
         "Five posts stand evenly in a row.",
         "front",
         a_plan({"kind": "Distributed", "members": [f"Post {n}" for n in range(5)], "pattern": "line"}),
+    ),
+    "W6": Case(
+        BALLS,
+        POST.format(0.45),
+        POST.format(0.1),
+        "The post stands beside the ball that is hit.",
+        "camera",
+        a_motion(
+            {"actor": "Cue", "kind": "roll", "start": 1, "end": 8},
+            {"actor": "Eight", "kind": "roll", "start": 8, "end": 20, "cause": "Cue 0"},
+            last=20,
+            camera={"position": (0, -3, 0.4), "target": (0, 0, 0.15), "subjects": ("Cue", "Eight")},
+        ),
     ),
 }
 

@@ -1,10 +1,12 @@
-"""R14: the camera shows its planned subjects."""
+"""R14 and W6: the camera shows its planned subjects, also as one sets another in motion."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from agents.protocol.judging.measured_motion import followed_names
+from agents.protocol.judging.phases import RESTING, cause_of, phase_label, planned_phases
 from agents.protocol.measures.motion import CameraViewRequest
 from agents.protocol.measures.requests import Measures, Unmeasured
 from agents.protocol.rule import NotApplicable, Rule, RuleContext
@@ -12,6 +14,7 @@ from agents.protocol.rule import NotApplicable, Rule, RuleContext
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from agents.plan.motion import MotionPhase
     from agents.protocol.findings import Finding
     from agents.protocol.measures.motion import CameraViewMeasure
 
@@ -129,6 +132,77 @@ def _at(frame: int | None) -> str:
     return "" if frame is None else f" at frame {frame}"
 
 
+# What sets another in motion
+
+
+@dataclass(frozen=True, slots=True)
+class _Blow:
+    """A phase that another actor's causes, at ``place`` in the plan, and a subject that acts in one of the two."""
+
+    place: int
+    phase: MotionPhase
+    subject: str
+
+
+def _blows(context: RuleContext) -> dict[_Blow, CameraViewRequest]:
+    """Those whose subjects can be looked at, each with the look at its frame. Raises NotApplicable."""
+    subjects, facts = _subjects(context), context.facts
+    blows: dict[_Blow, CameraViewRequest] = {}
+    for place, phase in planned_phases(context):
+        cause = cause_of(context, phase)
+        if cause is None or cause.actor == phase.actor or phase.kind in RESTING:
+            continue
+        if not facts.frame_start <= phase.start <= facts.frame_end:
+            continue
+        for subject in subjects:
+            if subject in {phase.actor, cause.actor} and not _grows(context, subject):
+                names = followed_names(context, subject)
+                if names and facts.camera is not None:
+                    blows[_Blow(place, phase, subject)] = CameraViewRequest(names, phase.start)
+    if not blows:
+        raise NotApplicable("no subject of the camera sets another in motion, or is set in motion")
+    return blows
+
+
+def _looks(context: RuleContext) -> Iterator[CameraViewRequest]:
+    yield from _blows(context).values()
+
+
+def _unseen(context: RuleContext, measures: Measures) -> Iterator[Finding]:
+    """Findings, one for each subject and frame."""
+    camera, most = context.facts.camera or "", context.tolerances.occluded
+    told: set[CameraViewRequest] = set()
+    for blow, look in _blows(context).items():
+        if look in told:
+            continue
+        told.add(look)
+        try:
+            view = measures[look]
+        except Unmeasured as reason:
+            yield W6.undecided((blow.subject,), reason)
+            continue
+        if view.inside is None:
+            continue
+        hidden = view.hidden or 0.0
+        unseen = 1 - view.inside * (1 - hidden)
+        if unseen <= most:
+            continue
+        outside = 1 - view.inside
+        why = f"{outside:.0%} is outside the picture" if outside else ""
+        if hidden:
+            behind = f"{hidden:.0%} is hidden, mostly by {', '.join(map(repr, view.by))}"
+            why = f"{why}; of the rest, {behind}" if why else behind
+        yield W6.finding(
+            (blow.subject, *view.by, camera),
+            f"{phase_label(blow.place, blow.phase)} begins at frame {blow.phase.start}, where {camera!r} shows "
+            f"{1 - unseen:.0%} of {blow.subject!r}: {why}.",
+            frame=blow.phase.start,
+            measured=unseen,
+            tolerance=most,
+            at=view.at,
+        )
+
+
 R14 = Rule(
     "R14",
     "framing",
@@ -142,4 +216,17 @@ R14 = Rule(
     needs_plan=True,
     tolerances=("out_of_frame", "frame_cover", "occluded"),
 )
-RULES = (R14,)
+W6 = Rule(
+    "W6",
+    "cause and effect in view",
+    "soft",
+    "Where a phase begins that another causes, the camera shows at least half of each of its subjects that acts in "
+    "them.",
+    "A blow that is hidden is missed: the film shows that things move, and not why.",
+    "If the film is to show it, move the camera, or what is in the way.",
+    _unseen,
+    _looks,
+    needs_plan=True,
+    tolerances=("occluded",),
+)
+RULES = (R14, W6)

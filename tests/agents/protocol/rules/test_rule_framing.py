@@ -1,4 +1,4 @@
-"""R14: what the camera shows, measured against what its lens takes in."""
+"""R14 and W6: what the camera shows, measured against what its lens takes in."""
 
 from __future__ import annotations
 
@@ -210,3 +210,55 @@ def test_a_plan_without_subjects_leaves_the_camera_alone(session: LiveSession) -
     assert verified(session, "R14", a_plan(relation)).not_applicable == {
         "R14": "the plan names no subjects of the camera"
     }
+
+
+# What sets another in motion
+
+TWO = """
+scene.frame_end = 40
+sheet('Cue', -1.5, -0.5, -0.5, 0.5)
+sheet('Eight', 0.5, 1.5, -0.5, 0.5)
+"""
+
+
+def hit(*, subjects: tuple[str, ...] = ("Cue", "Eight"), start: int = 20, **more: Any) -> ScenePlan:
+    phases = (
+        {"name": "roll", "actor": "Cue", "kind": "translate", "start": 1, "end": 20},
+        {"name": "away", "actor": "Eight", "kind": "translate", "start": start, "end": 60, **more},
+    )
+    made = plan("Cue", "Eight", frame_end=60, motion={"phases": phases})
+    return made.model_copy(update={"camera": made.camera.model_copy(update={"subjects": subjects})})
+
+
+@pytest.mark.parametrize(
+    ("script", "shown", "why"),
+    [
+        ("", None, ""),
+        ("sheet('Wall', 0.2, 0.45, -2, 2, y=-5)", None, ""),
+        ("sheet('Wall', 0.2, 0.55, -2, 2, y=-5)", "40% of 'Eight'", "60% is hidden, mostly by 'Wall mesh'."),
+        ("bpy.data.objects['Camera'].location.x = -4", "10% of 'Eight'", "90% is outside the picture."),
+    ],
+    ids=["nothing", "two fifths", "three fifths", "outside"],
+)
+def test_who_is_hit_is_to_be_seen_as_it_is_hit(
+    session: LiveSession, script: str, shown: str | None, why: str
+) -> None:
+    build(session, STAGE + TWO + script)
+    found = verified(session, "W6", hit(cause="roll"))
+    if shown is None:
+        assert found.passed == ("W6",)
+    else:
+        (finding,) = (one for one in found.findings if "'Eight':" in one.message)
+        assert finding.severity == "soft"
+        assert finding.frame == 20
+        assert finding.message.startswith("motion.phases[1] ('away'): 'Eight' begins at frame 20")
+        assert shown in finding.message
+        assert finding.message.endswith(why)
+
+
+@pytest.mark.parametrize("more", [{}, {"cause": "roll", "subjects": ()}, {"cause": "roll", "start": 50}])
+def test_only_subjects_that_set_each_other_in_motion_are_looked_at(
+    session: LiveSession, more: dict[str, Any]
+) -> None:
+    build(session, STAGE + TWO)
+    assert "W6" in verified(session, "W6", hit(**more)).not_applicable
