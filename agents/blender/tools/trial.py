@@ -65,6 +65,21 @@ class _ActorTrial(Claim):
     heights: list[tuple[Frame, float, float]] = Field(default=[], max_length=_MOST)
 
 
+class _Ranked(Claim):
+    """How many bodies there are, and a few of them, each with a length or a speed."""
+
+    count: int
+    most: list[tuple[Name, float]] = Field(max_length=_MOST)
+
+
+class _Others(Claim):
+    """Bodies that are not measured in full: how far they have ``moved`` (m), and what is ``moving`` at last (m/s)."""
+
+    count: int
+    moved: _Ranked
+    moving: _Ranked
+
+
 class _TrialReply(Claim):
     """Blender's reply."""
 
@@ -76,6 +91,7 @@ class _TrialReply(Claim):
     stopped: Text
     caches: list[Name] = Field(max_length=10_000)
     actors: list[_ActorTrial] = Field(max_length=_MOST)
+    others: _Others | None
     pictures: dict[
         Annotated[str, Field(pattern=r"^-?\d{1,7}$")], Annotated[str, Field(pattern=r"^-?\d+\.png$")]
     ]
@@ -137,7 +153,24 @@ def _lines(trial: _TrialReply) -> Iterator[str]:
         if len(actor.heights) > len(actor.samples):
             course = "; ".join(f"{frame}: {low:.3f} {high:.3f}" for frame, low, high in actor.heights)
             yield f"  - frame: lowest and highest point, m: {course}"
+    if trial.others is not None:
+        yield _line_of_others(trial.others)
     yield from trial.notes
+
+
+def _line_of_others(others: _Others) -> str:
+    moved, moving = others.moved, others.moving
+    parts = [
+        f"{moved.count} have moved{_most(moved, 'm')}",
+        f"{moving.count} still move{_most(moving, 'm/s')}",
+    ]
+    return f"- Other bodies: {others.count:,}, of which {'; at the last frame '.join(parts)}"
+
+
+def _most(ranked: _Ranked, unit: str) -> str:
+    listed = ", ".join(f"{name!r} {value:.2f} {unit}" for name, value in ranked.most)
+    more = ", …" if ranked.count > len(ranked.most) else ""
+    return f" ({listed}{more})" if listed else ""
 
 
 def _pace(trial: _TrialReply) -> str:

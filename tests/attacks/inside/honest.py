@@ -300,6 +300,11 @@ def on_trial(arguments):
         "stopped": "",
         "caches": ["cloth of 'Cube'"],
         "actors": [{"name": "Cube", "lowest": 0.0, "peak_speed": 1.0, "samples": [sample]}],
+        "others": {
+            "count": 2,
+            "moved": {"count": 1, "most": [["Brick", 0.5]]},
+            "moving": {"count": 0, "most": []},
+        },
         "pictures": {"1": "1.png"},
         "notes": [],
     }

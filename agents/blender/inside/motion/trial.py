@@ -16,6 +16,7 @@ from ..physics import caches, stepped_frames
 from ..physics.finite_check import Diverged
 from ..preview.frame_pictures import FramePictures, PictureJob
 from .actors import resolve, round_to
+from .body_places import BodyPlaces
 from .timeline import FrameStepper
 from .trajectories import Track
 from .viewpoints import path_view
@@ -24,7 +25,8 @@ _MOST_ACTORS = 12
 _SAMPLES = 6  # frames that are drawn, and at which volumes and depths are measured
 _TOLD = 3  # actors in a line of progress
 _MOST_POINTS = 20_000  # of an actor that are followed
-_HEIGHTS = 30  # frames of which heights are told
+_HEIGHTS = 30  # frames of which heights are told, of a few actors
+_FEW = 3
 _LATE = 4  # the last quarter of the frames tells what later ones will take
 _RAYS = 8
 _MOST_PARTNERS = 20  # of an actor, whose depth in it is measured
@@ -37,14 +39,19 @@ def trial(arguments, report):
     No bake is left behind, and the scene stays at its frame. Returns, in metres, m/s and seconds: the ``first`` and
     ``last`` frame, ``simulated`` (False: nothing had to be), ``seconds_per_frame`` (of all frames, and of the last
     ones), ``whole`` (frames of the whole bake, and the seconds it would take), ``stopped`` (why it ended early),
-    ``actors`` with their ``samples``, ``pictures`` ({frame: file in ``folder``}) and ``notes``.
+    ``actors`` with their ``samples``, ``others`` (see BodyPlaces), ``pictures`` ({frame: file in ``folder``}) and
+    ``notes``.
     """
     scene = bpy.context.scene
     chosen = caches.find_caches(scene) if arguments["objects"] is None else []
     names = arguments["objects"] or _simulated_names(scene, chosen)
     actors = resolve(names[:_MOST_ACTORS], scene, _MOST_POINTS)
+    rest = [scene.objects[name] for name in names[_MOST_ACTORS:]]
+    bodies = [obj for obj in rest if obj.rigid_body is not None]
     notes = (
-        [f"Only the first {_MOST_ACTORS} of {len(names)} are measured."] if len(names) > _MOST_ACTORS else []
+        [f"Only the first {_MOST_ACTORS} of {len(names)} are measured in full. Name others to see those."]
+        if rest
+        else []
     )
     parts = {obj.name for actor in actors for obj in actor.objects}
     own = caches.of_objects(scene, parts)
@@ -57,7 +64,7 @@ def trial(arguments, report):
         )
     notes += [f"Baked, so played as it is: {cache.label}." for cache in own if cache.baked]
     with _stepping_fluids(own, arguments["folder"]):
-        run = _Trial(scene, actors, arguments, report)
+        run = _Trial(scene, actors, bodies, arguments, report)
         run.step()
         run.draw(notes)
     return {**run.result(own), "notes": notes}
@@ -100,7 +107,7 @@ def _stepping_fluids(own, folder):
 class _Trial:
     """The frames that are stepped, and what is measured at them."""
 
-    def __init__(self, scene, actors, arguments, report):
+    def __init__(self, scene, actors, bodies, arguments, report):
         self._scene, self._report = scene, report
         self._seconds, self._width = arguments["seconds"], arguments["width"]
         self._folder = arguments["folder"]
@@ -110,7 +117,9 @@ class _Trial:
         self._wanted = range(self._first, self._first + arguments["frames"])
         held = stepped_frames.last_held(scene)
         self._simulates = first is not None and (held is None or held < self._wanted[-1])
-        self._tracks = [Track(actor, scene.render.fps / scene.render.fps_base) for actor in actors]
+        fps = scene.render.fps / scene.render.fps_base
+        self._tracks = [Track(actor, fps) for actor in actors]
+        self._others = BodyPlaces(bodies, fps)
         self._took = []
         self._stopped = ""
         self._solid_facts = {}
@@ -128,6 +137,7 @@ class _Trial:
                     self._took.append(time.monotonic() - started[-1])
                     for track in self._tracks:
                         track.add(frame, track.actor.state_at(graph))
+                    self._others.add(frame, graph)
                     if frame in samples or frame == self._wanted[-1]:
                         self._measure_solids(frame)
                     self._report(len(self._took), len(self._wanted), self._line(frame))
@@ -192,10 +202,12 @@ class _Trial:
             "stopped": self._stopped,
             "caches": [cache.label for cache in own],
             "actors": [self._actor_entry(number, track) for number, track in enumerate(self._tracks)],
+            "others": self._others.summary(),
             "pictures": self._pictures,
         }
 
     def _actor_entry(self, number, track):
+        told = min(len(track.frames), _HEIGHTS // max(1, len(self._tracks) // _FEW))
         lows = [low.z for low in track.lows if low is not None]
         speeds = [speed for speed in track.main_speeds if speed is not None]
         return {
@@ -204,10 +216,7 @@ class _Trial:
             "peak_speed": round_to(max(speeds)) if speeds else None,
             "heights": [
                 [frame, round_to(track.lows[at].z), round_to(track.highs[at].z)]
-                for frame, at in (
-                    (frame, track.frames.index(frame))
-                    for frame in _evenly(track.frames, min(_HEIGHTS, len(track.frames)))
-                )
+                for frame, at in ((frame, track.frames.index(frame)) for frame in _evenly(track.frames, told))
                 if track.lows[at] is not None
             ],
             "samples": [

@@ -49,6 +49,29 @@ def test_a_trial_tells_heights_speeds_pace_and_shows_a_strip(session: LiveSessio
     assert strip.png.startswith(b"\x89PNG")
 
 
+def test_bodies_that_are_not_measured_in_full_are_told_by_how_far_they_move(session: LiveSession) -> None:
+    session.run("""
+scene = bpy.context.scene
+for number in range(20):
+    bpy.ops.mesh.primitive_cube_add(size=0.2, location=(number, 0, 5 if number != 15 else 0.1))
+    bpy.context.object.name = f"Brick {number:02}"
+    bpy.ops.rigidbody.object_add()
+    bpy.context.object.rigid_body.use_start_deactivated = number == 15
+    bpy.context.object.rigid_body.use_deactivation = number == 15
+""")
+    found = session.use(TOOL, frames=13, pictures=False)
+    assert len(found.data["actors"]) == 12
+    assert {len(actor["heights"]) for actor in found.data["actors"]} == {7}
+    others = found.data["others"]
+    assert (others["count"], others["moved"]["count"], others["moving"]["count"]) == (8, 7, 7)
+    for name, metres in others["moved"]["most"]:
+        assert metres == pytest.approx(9.81 / 2 * (12 / 24) ** 2, rel=0.1), name
+    for name, speed in others["moving"]["most"]:
+        assert speed == pytest.approx(9.81 * 11.5 / 24, rel=0.1), name
+    assert "- Other bodies: 8, of which 7 have moved ('Brick 12' 1.2" in found.text
+    assert "only the first 12 of 20 are measured in full" in found.text.lower()
+
+
 def test_a_trial_past_its_deadline_still_says_what_a_frame_took(session: LiveSession) -> None:
     session.run(f"""{CLOTH_ON_BALL}
 import time
