@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from pydantic import Field
@@ -14,6 +15,8 @@ from simworlds.counting import counted
 _SECONDS = 120.0
 _MOST = 500
 _LISTED = 8
+_FEW = 3
+_NUMBER = re.compile(r"-?\d[\d.]*(e-?\d+)?")
 
 
 class GroupedObject(Arguments):
@@ -91,10 +94,21 @@ def run(context: CallContext, arguments: GroupArguments, call: Call) -> Result:
 
 def _read(data: dict[str, Any]) -> Result:
     """Blender's reply as text. Raises LookupError, TypeError or ValueError for a malformed one."""
-    lines = [_line(group) for group in data["groups"]]
+    alike: dict[str, list[dict[str, Any]]] = {}
+    for group in data["groups"]:
+        alike.setdefault(_NUMBER.sub("#", _line(group)), []).append(group)
+    lines = [line for groups in alike.values() for line in _lines(groups)]
     if data["warnings"]:
         lines += ["", "The protocol still requires:", *(f"- {warning}" for warning in data["warnings"])]
     return Result("\n".join(lines), data)
+
+
+def _lines(groups: list[dict[str, Any]]) -> list[str]:
+    """Of objects that differ only in numbers; of more than a few, the first alone is told in full."""
+    if len(groups) <= _FEW:
+        return [_line(group) for group in groups]
+    others = [group["object"] for group in groups[1:]]
+    return [_line(groups[0]), f"- In the same way {len(others):,} more: {_names(others)}."]
 
 
 def _line(group: dict[str, Any]) -> str:

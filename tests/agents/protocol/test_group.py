@@ -78,6 +78,28 @@ def test_loose_meshes_become_objects_of_the_protocol_in_one_call(session: LiveSe
     assert "'Chair' in 'furniture': root 'Chair root' at (1, 0.5, 0), 3 members" in found.text
 
 
+def test_many_alike_are_told_in_two_lines(session: LiveSession) -> None:
+    build(session, LOOSE)
+    session.run("""
+for number in range(9):
+    copy = bpy.data.objects.new(f"Block {number}", bpy.data.objects["Seat"].data)
+    copy.location.x = number - 4
+    bpy.context.scene.collection.objects.link(copy)
+""")
+    bricks = [
+        {"object": f"Brick {n}", "system": "set", "members": [f"Block {n}"], "contact_with": ["Room"]}
+        for n in range(9)
+    ]
+    found = group(session, ROOM, *bricks)
+    assert len(found.data["groups"]) == 10
+    lines = found.text.splitlines()
+    assert lines[1].startswith(
+        "- 'Brick 0' in 'set': root 'Brick 0 root' at (-4, 0, 0), 1 member: 'Block 0'."
+    )
+    assert lines[2].startswith("- In the same way 8 more: 'Brick 1', 'Brick 2'")
+    assert not any("Brick 3 root" in line for line in lines)
+
+
 def test_a_root_that_the_call_makes_may_be_touched(session: LiveSession) -> None:
     build(session, LOOSE)
     group(session, {**CHAIR, "contact_with": ["Chair root"]})
