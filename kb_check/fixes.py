@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from kb_check.reading import read_source
-from kb_check.salvage import parses
+from kb_check.salvage import is_valid
 from kb_check.text_edits import Text, apart, largest
 from simworlds.files import staged_file
 from simworlds.terminal.exact import print_exact
@@ -58,7 +58,7 @@ def apply_fixes(source: Source, findings: Iterable[Finding], *, unsafe: bool = F
         return text.edited(replace(edit, text=edit.text.replace("\n", newline)) for edit in edits).code
 
     together = list(apart(text, fixes, lambda fix: fix.edits))
-    chosen = largest(together, lambda some: parses(fixed(some)))
+    chosen = largest(together, lambda some: is_valid(fixed(some)))
     changed = fixed(chosen)
     return Fixed(changed, len(chosen)) if changed != source.text else nothing
 

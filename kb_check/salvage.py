@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from dataclasses import dataclass
 
@@ -63,6 +64,19 @@ def salvage(code: str) -> Salvage:
 def parses(code: str) -> bool:
     """Whether Python's parser takes the code."""
     return _failing_line([code]) is None
+
+
+def is_valid(code: str) -> bool:
+    """Whether Python takes the code: its parser lets a keyword pass that a call names twice."""
+    tree = parsed(code)
+    return not isinstance(tree, SyntaxError) and not any(
+        isinstance(node, ast.Call) and _repeats_a_keyword(node) for node in ast.walk(tree)
+    )
+
+
+def _repeats_a_keyword(call: ast.Call) -> bool:
+    names = [keyword.arg for keyword in call.keywords if keyword.arg is not None]
+    return len({*names}) < len(names)
 
 
 def looks_like_python_2(code: str) -> bool:

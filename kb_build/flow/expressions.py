@@ -7,6 +7,7 @@ import builtins
 import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
+from kb_build.flow.api import ARRAY
 from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
 from kb_build.flow.doubts import NO_DOUBTS, without
 from kb_build.flow.facts import COMPUTED, COMPUTED_IN_PLACE, DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE
@@ -70,6 +71,7 @@ _MATH = frozenset(
     {"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion", "mathutils.Matrix"}
 )
 _VECTOR = "mathutils.Vector"
+_SEQUENCE = "a sequence"  # of Python's, or of numbers that a property holds: mathutils computes with neither
 _SIGNS: dict[type[ast.operator], str] = {
     ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.MatMult: "@", ast.Div: "/",
 }  # fmt: skip
@@ -263,6 +265,11 @@ class Expressions(Members):
                 if pair not in PRODUCTS["@"]:
                     return UNKNOWN
                 operator = ast.MatMult()  # which is meant
+            elif sign in PRODUCTS:  # a vector of the same numbers is meant
+                left, right = (
+                    Instance(_VECTOR) if each == _SEQUENCE else kind
+                    for each, kind in zip(pair, (left, right), strict=True)
+                )
         return _operation(left, right, operator)
 
     def _unary(self, node: ast.UnaryOp) -> Type:
@@ -629,8 +636,8 @@ def _operand(kind: Type) -> str:
     """What a value is to mathutils: a class, ``number``, or what it never computes with; empty if it may be any."""
     if isinstance(kind, Plain):
         return "number" if kind.kind in _NUMBERS else kind.kind
-    if isinstance(kind, Tuple):
-        return "a sequence"
+    if isinstance(kind, Tuple) or (isinstance(kind, Instance) and kind.cls == ARRAY):
+        return _SEQUENCE
     return kind.cls if isinstance(kind, Instance) and kind.cls in _MATH else ""
 
 

@@ -16,7 +16,7 @@ from kb_check.migrate.rewrite import all_rewrites
 from kb_check.migrate.rewrites.matrix_products import BEFORE_PRODUCTS
 from kb_check.migrate.version_tests import reaches
 from kb_check.package import paths_in_package
-from kb_check.salvage import parses
+from kb_check.salvage import is_valid
 from kb_check.text_edits import Text, apart, largest
 
 if TYPE_CHECKING:
@@ -135,7 +135,7 @@ class Migrator:
                 [*edits, *{edit: None for change in chosen for edit in change.additions}]
             )
 
-        chosen = largest(changes, lambda some: parses(made(some).code))
+        chosen = largest(changes, lambda some: is_valid(made(some).code))
         new = made(chosen)
         if new.code == state.text.code:
             return False

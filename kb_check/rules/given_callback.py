@@ -67,6 +67,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _ADDING = frozenset({"append", "insert"})
+_NOT_CALLING = frozenset({"is_registered", "unregister"})  # they look for what was given before
 # What tells how many arguments a function gets, as the base has it: ``Callable[[int], bool] | None``.
 _CALLABLE = re.compile(r"Callable\[\[(.*)\], [^\]]*\](?: \| None)?")
 _DECLARING = "bpy.props."  # has a rule of its own
@@ -92,7 +93,7 @@ def _check(script: Script) -> Iterator[Finding]:
             )
         for parameter, node in () if path.startswith(_DECLARING) else call.arguments():
             form = _CALLABLE.fullmatch(parameter.type)
-            if form:
+            if form and path.rpartition(".")[2] not in _NOT_CALLING:
                 count = len([*split_arguments(form[1])])
                 yield from _judged(script, node, path, (count,), may_be_none=parameter.type.endswith("None"))
             elif f"{path}({parameter.name})" in _FUNCTIONS_ONLY and (given := _other(script, node)):

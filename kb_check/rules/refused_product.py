@@ -10,6 +10,8 @@ ob.location += (0, 0, 1)  # reported
 ob.location += Vector((0, 0, 1))
 ob.rotation_euler += (0, 0, 0.5)  # reported
 ob.rotation_euler.z += 0.5
+[ob.matrix_world @ corner for corner in ob.bound_box]  # reported: its corners are no vectors
+[ob.matrix_world @ Vector(corner) for corner in ob.bound_box]
 ```
 
 So is what is computed with None: `matrix.invert() @ vector`, for `matrix.inverted()`.

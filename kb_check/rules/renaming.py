@@ -58,6 +58,13 @@ def renaming(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:
         return None
     sure = lacking.sure and _takes_its_keywords(script, row.node, row, lacking)
     if row.kind == "keyword":
+        if any(
+            keyword.arg == name
+            for call in _calls(row)
+            if row.node in call.keywords
+            for keyword in call.keywords
+        ):
+            return None  # a call cannot be given it twice
         return Fix(f"Write {name}", (edit,), sure=sure and _is_of_right_callee(script, row))
     values = _values_beside(script, row, lacking)
     is_refused = values is None and isinstance(_assigned(row), ast.Constant)

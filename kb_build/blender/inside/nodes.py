@@ -216,18 +216,22 @@ class Sockets:
         """Looks for sockets that no mode shows by itself in the modes of two properties at once."""
         node = self.nodes[0]
         enums = list(mode_enums(node))
-        if len(enums) < 2 or all(shown for _, shown, _, _ in self.seen.values()):
+        if len(enums) < 2 or not self.may_show_more():
             return
         for (first, values), (second, others) in itertools.combinations(enums, 2):
             before = getattr(node, first), getattr(node, second)
             for value, other in itertools.product(values, others):
-                unseen = {key for key, (_, shown, _, _) in self.seen.items() if not shown}
-                if unseen and put(node, first, value) and put(node, second, other):
-                    shown = self.look(node, f"{first}={value},{second}={other}")
-                    for key in unseen.intersection(shown):
+                if put(node, first, value) and put(node, second, other):
+                    known = {key for key, (_, shown, _, _) in self.seen.items() if shown}
+                    for key in self.look(node, f"{first}={value},{second}={other}").keys() - known:
                         self.modes[key] = [f"{first}={value}", f"{second}={other}"]
             put(node, first, before[0])
             put(node, second, before[1])
+
+    def may_show_more(self):
+        """Whether there are sockets that no mode shows, or that a mode makes."""
+        states = set().union(*(present for present, *_ in self.seen.values()))
+        return any(not shown or present != states for present, shown, *_ in self.seen.values())
 
     def checked(self):
         """Sets all modes together, and corrects what does not hold; returns the conditions that modes cannot say."""

@@ -42,6 +42,20 @@ def test_what_would_fail_is_not_written(rule_checker: Checker, before: str, line
 
 
 @pytest.mark.parametrize(
+    "line",
+    [
+        "bpy.ops.mesh.primitive_uv_sphere_add(segments=8, radius=1, size=2)",
+        "bpy.ops.transform.rotate(value=1, constraint_orientation='GLOBAL', orient_type='LOCAL')",
+        "bpy.ops.export_scene.obj(filepath='x', use_selection=True, export_selected_objects=True)",
+    ],
+)
+def test_no_keyword_is_written_twice(rule_checker: Checker, line: str) -> None:
+    mended = _mended(rule_checker, line)
+    compile(mended, "mended", "exec")
+    assert mended.partition("(")[2] == line.partition("(")[2], "two values contradict each other"
+
+
+@pytest.mark.parametrize(
     ("before", "line", "right"),
     [
         (_ZONE, "first.pair_with_outptu(last)", "first.pair_with_output(last)"),

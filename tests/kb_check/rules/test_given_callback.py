@@ -95,6 +95,11 @@ def test_a_timer_that_wants_arguments_is_found(check: Check) -> None:
     assert len(check("given-callback", f"import bpy\n{_TIMER}bpy.app.timers.register(late)")) == 1
 
 
+def test_what_only_looks_for_a_timer_takes_any_function(check: Check) -> None:
+    looking = "bpy.app.timers.is_registered(late) and bpy.app.timers.unregister(late)"
+    assert not check("given-callback", f"import bpy\n{_TIMER}{looking}")
+
+
 def test_what_decorators_may_have_changed_is_left_alone(check: Check) -> None:
     add = "bpy.app.handlers.load_post.append(f)"
     assert not check("given-callback", f"import bpy\nfrom x import wrap\n@wrap\ndef f():\n    pass\n{add}")

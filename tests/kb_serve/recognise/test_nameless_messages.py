@@ -123,6 +123,12 @@ bpy.ops.constraint.followpath_path_animate(constraint="Follow Path")
 scene.render.engine = "CYCLES"; bpy.ops.object.bake(type="COMBINED", pass_filter={"DIRECT", "COLOR"})
 ob.asset_mark(); marked()
 loops_layer_of_a_vertex()
+scene["set"] = {1, 2}
+scene["list"] = [1, "a"]
+scene["keys"] = {1: 2}
+bm = bmesh.new(); bmesh.ops.create_cube(bm, size=1); bm.faces.ensure_lookup_table(); bm.faces[0].loops[0][bm.loops.layers.uv.active]
+ob.evaluated_geometry()
+ob.matrix_world @ ob.bound_box[0]
 mesh.vertices[::2]
 armature(); bpy.ops.pose.constraint_add(type="IK")
 armature(); bpy.ops.constraint.childof_set_inverse(constraint="Child Of", owner="BONE")

@@ -11,6 +11,7 @@ what extreme values end there is left out.
 import bpy
 
 from ..apart import sent_apart
+from ..crashes import nodes
 from ..rna import path_of
 from ..wire import limit
 from .assigning import refused_value_items, same
@@ -217,7 +218,7 @@ def find_all(write, observer):
     Wants a system that can work apart.
     """
     found = {}
-    for make in MAKERS:
+    for make in (*MAKERS, nodes):
         for row in found_apart(make, observer):
             found.setdefault(row["path"], row)
     for _, row in sorted(found.items()):

@@ -31,7 +31,25 @@ _ONLY_DEFINED = (
     "`size: bpy.props.IntProperty()`, register the class, and read the value from an instance: `self.size` of an "
     "operator, `scene.settings.size` of a property group."
 )
+_KEPT = (f"{T}bpy_struct.id_properties_ensure", f"{T}bpy_struct.id_properties_ui")
+_AS_TEXT = "Keep anything else as a text: `str(value)`, or `json.dumps(value)` and `json.loads(…)`."
 CUSTOM_PROPERTIES = (
+    NamelessMessage(
+        ("invalid id-property type ", " not supported"),
+        _KEPT,
+        "A custom property keeps a number, a text, bytes, a data-block, a list of numbers (no set), or a dictionary "
+        f"whose keys are texts. {_AS_TEXT}",
+    ),
+    NamelessMessage(
+        ("are allowed in ID property arrays",),
+        _KEPT,
+        f"A list of a custom property holds numbers, or dictionaries: no texts, no None. {_AS_TEXT}",
+    ),
+    NamelessMessage(
+        ("invalid id-property key, expected a string",),
+        _KEPT,
+        "The keys of a dictionary that a custom property keeps are texts: `{str(key): value}`.",
+    ),
     NamelessMessage(
         ("current value '", "' matches no enum in '"),
         ("bpy.props.EnumProperty",),

@@ -8,6 +8,12 @@ from kb_serve.recognise.messages.nameless.message import NamelessMessage
 _O = "bpy.ops.object."
 MESHES = (
     NamelessMessage(
+        ("invalid key, must be a BMLayerItem",),
+        ("bmesh.types.BMLayerCollection.verify", "bmesh.types.BMLayerCollection.active"),
+        "The layer is None: `.active` and `.get(name)` give none where there is none. `bm.loops.layers.uv.verify()` "
+        "gives the active one, and makes it where it lacks; so do the layers of `bm.verts`, `bm.edges`, `bm.faces`.",
+    ),
+    NamelessMessage(
         ("Tangent space can only be computed for tris/quads",),
         (f"{T}Mesh.calc_tangents", "bmesh.ops.triangulate"),
         "A face has more than four corners: triangulate such faces first (`bmesh.ops.triangulate`).",

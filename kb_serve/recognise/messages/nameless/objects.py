@@ -9,6 +9,11 @@ _ANNOTATION = "ID type 'GREASEPENCIL' is not valid for an object"
 
 OBJECTS = (
     NamelessMessage(
+        ("Expected an evaluated object",),
+        (f"{T}ID.evaluated_get", f"{T}Object.evaluated_geometry"),
+        "Ask the evaluated object: `obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).evaluated_geometry()`.",
+    ),
+    NamelessMessage(
         ("selected because it is not in View Layer",),
         (f"{T}Object.select_set", f"{T}CollectionObjects.link"),
         "The object is in no collection of the view layer: `scene.collection.objects.link(obj)` first.",

@@ -12,7 +12,17 @@ _IS_NONE = (
     "One side is None: `normalize()`, `invert()`, `transpose()`, `rotate()` and the like change their own value and "
     "return nothing. `normalized()`, `inverted()`, `transposed()` return another one."
 )
+_IS_ARRAY = (
+    "Numbers that a property holds are no vector where Blender does not say so (corners of `bound_box`, colours of four "
+    "numbers): make one, `matrix @ Vector(corner)`. All corners of an object in the world: "
+    "`[obj.matrix_world @ Vector(corner) for corner in obj.bound_box]`."
+)
 VECTORS = (
+    NamelessMessage(
+        ("multiplication: not supported between ", "'bpy_prop_array'"),
+        ("mathutils.Vector", "mathutils.Matrix"),
+        _IS_ARRAY,
+    ),
     NamelessMessage(
         ("multiplication: not supported between ", "'NoneType'"),
         ("mathutils.Matrix.inverted", "mathutils.Vector.normalized"),
