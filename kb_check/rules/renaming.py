@@ -58,14 +58,7 @@ def renaming(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:
         return None
     sure = lacking.sure and _takes_its_keywords(script, row.node, row, lacking)
     if row.kind == "keyword":
-        if any(
-            keyword.arg == name
-            for call in _calls(row)
-            if row.node in call.keywords
-            for keyword in call.keywords
-        ):
-            return None  # a call cannot be given it twice
-        return Fix(f"Write {name}", (edit,), sure=sure and _is_of_right_callee(script, row))
+        return _renamed_keyword(script, row, name, edit, sure=sure)
     values = _values_beside(script, row, lacking)
     is_refused = values is None and isinstance(_assigned(row), ast.Constant)
     fix = Fix(f"Write {name}", (edit, *(values or ())), sure=sure and values is not None)
@@ -87,6 +80,14 @@ def may_take(script: Script, parameter: Parameter, value: ast.expr) -> bool:
     if isinstance(value.value, str) and listed and not parameter.is_open:
         return value.value in listed
     return type(value.value) in _TAKES[parameter.plain_type]
+
+
+def _renamed_keyword(script: Script, row: Resolution, name: str, edit: Edit, *, sure: bool) -> Fix | None:
+    """Writes the name of another keyword, unless the call has that already."""
+    call = next((one for one in _calls(row) if row.node in one.keywords), None)
+    if call is not None and any(keyword.arg == name for keyword in call.keywords):
+        return None
+    return Fix(f"Write {name}", (edit,), sure=sure and _is_of_right_callee(script, row))
 
 
 def _renamed_operator(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:

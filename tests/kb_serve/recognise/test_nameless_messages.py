@@ -126,7 +126,7 @@ loops_layer_of_a_vertex()
 scene["set"] = {1, 2}
 scene["list"] = [1, "a"]
 scene["keys"] = {1: 2}
-bm = bmesh.new(); bmesh.ops.create_cube(bm, size=1); bm.faces.ensure_lookup_table(); bm.faces[0].loops[0][bm.loops.layers.uv.active]
+bm = bmesh.new(); bm.verts.new()[bm.verts.layers.float.active]
 ob.evaluated_geometry()
 ob.matrix_world @ ob.bound_box[0]
 mesh.vertices[::2]

@@ -13,8 +13,8 @@ _IS_NONE = (
     "return nothing. `normalized()`, `inverted()`, `transposed()` return another one."
 )
 _IS_ARRAY = (
-    "Numbers that a property holds are no vector where Blender does not say so (corners of `bound_box`, colours of four "
-    "numbers): make one, `matrix @ Vector(corner)`. All corners of an object in the world: "
+    "Numbers that a property holds are not always a vector (the corners of `bound_box`, colours of four numbers are "
+    "none): make one, `matrix @ Vector(corner)`. All corners of an object in the world: "
     "`[obj.matrix_world @ Vector(corner) for corner in obj.bound_box]`."
 )
 VECTORS = (
