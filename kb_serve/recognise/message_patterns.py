@@ -29,7 +29,9 @@ TYPE_HAS_NO = re.compile(r"\btype object ['\"](?P<owner>[\w.]++)['\"] has no att
 MODULE_HAS_NO = re.compile(r"module ['\"]?(?P<owner>[\w.]++)['\"]? has no attribute ['\"]?(?P<name>\w+)")
 MEANT = re.compile(r"\. Did you mean: '(?P<name>\w+)'\?")
 NOT_IN_COLLECTION = re.compile(r"\bbpy_prop_collection: attribute \"(?P<name>\w+)\" not found")
-NO_KEY = re.compile(r"(?:\b(?P<on>bpy_\w+)\[key\]: |^\W*)key \"(?P<name>[^\"]+)\" not found")
+NO_KEY = re.compile(
+    r"(?:\b(?P<on>bpy_\w+)\[key\]: |^\W*(?:KeyError\b\W*)?)key \"(?P<name>[^\"]+)\" not found"
+)
 NO_INDEX = re.compile(r"\w+\[index\](?: = value)?: index (?P<index>-?\d+) out of range, size (?P<size>\d+)")
 NO_ELEMENT = re.compile(
     r"\bindex out of range \"(?P<name>\w+)\", given (?P<index>-?\d+), array length is (?P<size>\d+)"

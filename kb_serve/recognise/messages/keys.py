@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import COLLECTION, STRUCT, TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.messages.guides import EXTENSIONS
+from kb_serve.recognise.messages.labelled_nodes import sockets_of_labelled_nodes
 from kb_serve.recognise.removed.newer_nodes import tell_of_the_newer_node
 from kb_serve.recognise.resolving.subscripts import CustomProperties
 
@@ -74,6 +75,8 @@ class Keys:
             within = re.findall(_LOOKED_INTO.format(re.escape(name)), query)
             gone = [one for one in recognition.removed if one.path.rpartition(".")[2] in within]
             recognition.removed = [one for one in recognition.removed if one not in gone]
+        for rank, path in enumerate(sockets_of_labelled_nodes(name, query, self._reader)):
+            recognition.add(path, 0.98 - 0.01 * rank, "error message")
         if recognition.removed or any(match.sure >= 0.9 for match in recognition.matches):
             return
         if collection != _OF_COLLECTIONS:
