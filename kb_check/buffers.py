@@ -1,6 +1,9 @@
-"""Buffers for ``foreach_get`` and ``foreach_set`` that surely are too short: all parts of all items go into one row.
+"""Buffers for ``foreach_get`` and ``foreach_set`` that surely are too short, or of other numbers than they take.
+
+All parts of all items go into one row.
 
 ```python
+image.pixels.foreach_set(np.ones(len(image.pixels)))  # of 64 bits
 count = len(mesh.vertices)
 mesh.vertices.foreach_get("co", np.zeros(count))  # 3 numbers each
 mesh.vertices.foreach_get("co", np.zeros((count, 3)))  # only the rows count
@@ -13,6 +16,7 @@ import ast
 from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.flow.api import ARRAY
 from kb_build.flow.types import Collection, Instance
 from kb_check.literals import number, times_bound
 from kb_check.made_here import attributes, callee_path, once_bound
@@ -22,6 +26,8 @@ if TYPE_CHECKING:
 
 _FUNCTIONS = frozenset({"foreach_get", "foreach_set"})
 _MAKING = frozenset({"empty", "full", "ones", "zeros"})  # of numpy, by the shape that comes first
+_OF_DOUBLES = frozenset({"empty", "ones", "zeros"})  # unless they are told otherwise
+_DOUBLES = frozenset({"float", "np.float64", "numpy.float64", "'float64'", "np.double", "'d'"})
 _RESIZING = frozenset({"append", "extend", "insert", "resize", "shape"})
 
 
@@ -97,3 +103,35 @@ def _stays(script: Script, items: ast.expr, buffer: ast.expr) -> bool:
         isinstance(node.target, ast.Name) and node.target.id in names for node in script.all(ast.AugAssign)
     )
     return not is_resized and not is_extended and all(times_bound(script)[name] <= 1 for name in names)
+
+
+def wide_buffer(script: Script, call: ast.Call) -> ast.Call | None:
+    """The call of numpy that makes the buffer of a call of an array's own ``foreach_get`` or ``foreach_set``, where it
+    makes floats of 64 bits: an array of Blender takes those of 32 alone, as its collections do not.
+    """
+    match call:
+        case ast.Call(func=ast.Attribute(attr=name), args=[buffer], keywords=[]) if name in _FUNCTIONS:
+            pass
+        case _:
+            return None
+    source = once_bound(script, buffer)
+    is_of_array = callee_path(script, call) == f"{ARRAY}.{name}"
+    return source if is_of_array and isinstance(source, ast.Call) and _makes_doubles(source) else None
+
+
+def _makes_doubles(call: ast.Call) -> bool:
+    """Whether a call surely makes an array of numpy of floats of 64 bits."""
+    match call:
+        case ast.Call(func=ast.Attribute(value=ast.Name(id="np" | "numpy"), attr=name), args=[_]) if (
+            name in _OF_DOUBLES
+        ):
+            kinds = [keyword.value for keyword in call.keywords if keyword.arg == "dtype"]
+            return len(call.keywords) == len(kinds) and all(ast.unparse(kind) in _DOUBLES for kind in kinds)
+        case ast.Call(
+            func=ast.Attribute(
+                value=ast.Attribute(value=ast.Name(id="np" | "numpy"), attr="random"), attr=name
+            )
+        ):
+            return name in {"rand", "random"} and not call.keywords
+        case _:
+            return False

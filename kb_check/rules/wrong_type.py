@@ -14,6 +14,7 @@ ob.matrix_world = Matrix.Rotation(1, 3, "Z")  # reported: 4 × 4 floats
 bmesh.ops.translate(bm, vec=(0, 0, 1), verts=faces)  # reported: vertices
 variable.targets[0].id = scene  # reported: variable.targets[0].id_type = "SCENE" comes first
 loop[uv_layer] = (0, 0)  # reported: loop[uv_layer].uv = (0, 0)
+image.pixels.foreach_set(np.ones(count))  # reported: np.ones(count, dtype=np.float32)
 mix = tree.nodes.new("ShaderNodeMix")
 mix.inputs["A"].default_value = (1, 0, 0, 1)  # reported: mix.data_type = "RGBA" comes first
 ```
@@ -42,13 +43,14 @@ from kb_build.symbols.object_data import OBJECT_DATA
 from kb_build.symbols.paths import last_name
 from kb_check.annotated_parameters import ONE_IS_WRONG, is_annotated
 from kb_check.brackets import bracketed
+from kb_check.buffers import wide_buffer
 from kb_check.calls import nothing_from, other_way
 from kb_check.conversions import misfit
 from kb_check.documented import layer_misfit
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.given import assigned, class_values, given_values
 from kb_check.literals import items, set_of
-from kb_check.made_here import is_new, knows_all, named_words, once_bound
+from kb_check.made_here import callee_path, is_new, knows_all, named_words, once_bound
 from kb_check.mathutils_sizes import MATRIX
 from kb_check.misfits import describe
 from kb_check.own_properties import given_to_own
@@ -106,6 +108,26 @@ def _check(script: Script) -> Iterator[Finding]:
         )  # fmt: skip
     yield from _items_given(script)
     yield from _other_ids(script)
+    yield from _doubles(script)
+
+
+def _doubles(script: Script) -> Iterator[Finding]:
+    """Buffers of 64 bits a number for arrays of 32."""
+    for call in script.all(ast.Call):
+        buffer = wide_buffer(script, call)
+        if buffer is None or is_tried(script, call):
+            continue
+        path, whole = callee_path(script, call), script.span(buffer)
+        end = Span(whole.end_line, whole.end_column - 1, whole.end_line, whole.end_column - 1)
+        is_plain = len(buffer.args) == 1 and not buffer.keywords and "random" not in ast.unparse(buffer.func)
+        numpy = ast.unparse(buffer.func).partition(".")[0]
+        edit = Edit(end, f", dtype={numpy}.float32")
+        yield Finding(
+            RULE.id, "error", script.span(call.args[0]),
+            f"`{path}` takes floats of 32 bits, and numpy makes these of 64: `dtype={numpy}.float32`, or "
+            f"`.astype({numpy}.float32)`.",
+            path, (), Fix("Make them floats of 32 bits", (edit,), sure=False) if is_plain else None,
+        )  # fmt: skip
 
 
 def _nothing_given(script: Script, given: Given, function: str) -> Iterator[Finding]:
