@@ -50,6 +50,7 @@ n = node(); n.id_data.links.new(n.inputs[0], n.inputs[1])
 track.strips.new("s", 1, action); track.strips.new("t", 1, action)
 ob.keyframe_insert("nothing")
 ob.driver_add("nothing")
+v = ob.driver_add("location", 0).driver.variables.new(); v.type = "TRANSFORMS"; v.targets[0].id_type = "OBJECT"
 ob.keyframe_delete("location[0]")
 ob.driver_add("location[0]")
 ob.driver_remove("location[0]")

@@ -7,6 +7,12 @@ from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
 ANIMATION = (
     NamelessMessage(
+        ('attribute "id_type" from "DriverTarget" is read-only',),
+        (f"{T}DriverTarget.id_type", f"{T}DriverVariable.type"),
+        "A variable of transforms, of a distance or of a rotation takes objects alone: leave `id_type` out, and set "
+        "`id`. To read from other data, set `variable.type = 'SINGLE_PROP'` first.",
+    ),
+    NamelessMessage(
         ("Follow Path constraint not found",),
         ("bpy.ops.constraint.followpath_path_animate", f"{T}FollowPathConstraint"),
         "The operator looks for a constraint of that name on the active object: "
