@@ -17,11 +17,13 @@ from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.api import ARRAY
-from kb_build.flow.types import Collection, Instance
+from kb_build.flow.facts import ELEMENT
+from kb_build.flow.types import FLOAT, Collection, Instance, Sequence
 from kb_check.literals import number, times_bound
 from kb_check.made_here import attributes, callee_path, once_bound
 
 if TYPE_CHECKING:
+    from kb_build.flow.types import Type
     from kb_check.script import Script
 
 _FUNCTIONS = frozenset({"foreach_get", "foreach_set"})
@@ -106,17 +108,29 @@ def _stays(script: Script, items: ast.expr, buffer: ast.expr) -> bool:
 
 
 def wide_buffer(script: Script, call: ast.Call) -> ast.Call | None:
-    """The call of numpy that makes the buffer of a call of an array's own ``foreach_get`` or ``foreach_set``, where it
-    makes floats of 64 bits: an array of Blender takes those of 32 alone, as its collections do not.
+    """The call of numpy that makes the buffer which an array's own ``foreach_get`` or ``foreach_set`` is given, if its
+    floats have 64 bits. An array of Blender takes those of 32 bits alone; its collections take both.
     """
     match call:
-        case ast.Call(func=ast.Attribute(attr=name), args=[buffer], keywords=[]) if name in _FUNCTIONS:
-            pass
+        case ast.Call(func=ast.Attribute(value=array, attr=name), args=[buffer], keywords=[]) if (
+            name in _FUNCTIONS and callee_path(script, call) == f"{ARRAY}.{name}"
+        ):
+            source = once_bound(script, buffer)
         case _:
             return None
-    source = once_bound(script, buffer)
-    is_of_array = callee_path(script, call) == f"{ARRAY}.{name}"
-    return source if is_of_array and isinstance(source, ast.Call) and _makes_doubles(source) else None
+    is_wide = isinstance(source, ast.Call) and _makes_doubles(source) and _element(script, array) == FLOAT
+    return source if isinstance(source, ast.Call) and is_wide else None
+
+
+def _element(script: Script, array: ast.expr) -> Type | None:
+    """What an array of Blender holds, where that is known."""
+    match script.type_of(array):
+        case Sequence(element=element):
+            return element
+        case Instance() as kind:
+            return kind.trait(ELEMENT)
+        case _:
+            return None
 
 
 def _makes_doubles(call: ast.Call) -> bool:
