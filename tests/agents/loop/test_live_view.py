@@ -208,7 +208,8 @@ def test_costs_are_shown_and_recorded_answers_cost_nothing() -> None:
     assert "No model was asked" in recorded
 
 
-def test_screen_shows_the_last_state_when_it_closes() -> None:
+def test_screen_shows_the_last_state_when_it_closes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TERM", "xterm")  # a dumb terminal has no cursor to hide
     console = Console(io.StringIO(), width=100, height=40, force_terminal=True, color_system=None)
     with RunScreen(console, "/tmp/run") as view:
         for row in dominoes().rows:
