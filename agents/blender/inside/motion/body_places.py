@@ -16,12 +16,10 @@ class BodyPlaces:
     def __init__(self, objects, fps):
         self._objects, self._fps = objects, fps
         self._first, self._before, self._last = {}, {}, {}
-        self._frame, self._length = None, 1
 
-    def add(self, frame, graph):
-        """Takes their places at a frame, which comes after those that were added."""
-        self._length = frame - self._frame if self._frame is not None else 1
-        self._frame, self._before = frame, self._last
+    def add(self, graph):
+        """Takes their places at a frame, the next after the one that was added."""
+        self._before = self._last
         self._last = {
             obj.name: Vector(obj.evaluated_get(graph).matrix_world.translation) for obj in self._objects
         }
@@ -35,8 +33,7 @@ class BodyPlaces:
         if not self._last:
             return None
         way = {name: (place - self._first[name]).length for name, place in self._last.items()}
-        step = {name: (self._last[name] - place).length for name, place in self._before.items()}
-        speed = {name: length * self._fps / self._length for name, length in step.items()}
+        speed = {name: (self._last[name] - place).length * self._fps for name, place in self._before.items()}
         return {
             "count": len(self._objects),
             "moved": _above(way, _MOVED),

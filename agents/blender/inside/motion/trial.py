@@ -137,7 +137,7 @@ class _Trial:
                     self._took.append(time.monotonic() - started[-1])
                     for track in self._tracks:
                         track.add(frame, track.actor.state_at(graph))
-                    self._others.add(frame, graph)
+                    self._others.add(graph)
                     if frame in samples or frame == self._wanted[-1]:
                         self._measure_solids(frame)
                     self._report(len(self._took), len(self._wanted), self._line(frame))

@@ -144,10 +144,10 @@ class _Blow:
     subject: str
 
 
-def _blows(context: RuleContext) -> dict[_Blow, CameraViewRequest]:
-    """Those whose subjects can be looked at, each with the look at its frame. Raises NotApplicable."""
+def _blows(context: RuleContext) -> dict[CameraViewRequest, _Blow]:
+    """A look at each frame and subject that can be looked at, with the first blow there. Raises NotApplicable."""
     subjects, facts = _subjects(context), context.facts
-    blows: dict[_Blow, CameraViewRequest] = {}
+    blows: dict[CameraViewRequest, _Blow] = {}
     for place, phase in planned_phases(context):
         cause = cause_of(context, phase)
         if cause is None or cause.actor == phase.actor or phase.kind in RESTING:
@@ -158,24 +158,21 @@ def _blows(context: RuleContext) -> dict[_Blow, CameraViewRequest]:
             if subject in {phase.actor, cause.actor} and not _grows(context, subject):
                 names = followed_names(context, subject)
                 if names and facts.camera is not None:
-                    blows[_Blow(place, phase, subject)] = CameraViewRequest(names, phase.start)
+                    look = CameraViewRequest(names, phase.start)
+                    blows.setdefault(look, _Blow(place, phase, subject))
     if not blows:
         raise NotApplicable("no subject of the camera sets another in motion, or is set in motion")
     return blows
 
 
 def _looks(context: RuleContext) -> Iterator[CameraViewRequest]:
-    yield from _blows(context).values()
+    yield from _blows(context)
 
 
 def _unseen(context: RuleContext, measures: Measures) -> Iterator[Finding]:
     """Findings, one for each subject and frame."""
     camera, most = context.facts.camera or "", context.tolerances.occluded
-    told: set[CameraViewRequest] = set()
-    for blow, look in _blows(context).items():
-        if look in told:
-            continue
-        told.add(look)
+    for look, blow in _blows(context).items():
         try:
             view = measures[look]
         except Unmeasured as reason:
