@@ -94,21 +94,23 @@ def run(context: CallContext, arguments: GroupArguments, call: Call) -> Result:
 
 def _read(data: dict[str, Any]) -> Result:
     """Blender's reply as text. Raises LookupError, TypeError or ValueError for a malformed one."""
-    alike: dict[str, list[dict[str, Any]]] = {}
+    alike: dict[str, list[tuple[str, str]]] = {}
     for group in data["groups"]:
-        alike.setdefault(_NUMBER.sub("#", _line(group)), []).append(group)
-    lines = [line for groups in alike.values() for line in _lines(groups)]
+        line = _line(group)
+        alike.setdefault(_NUMBER.sub("#", line), []).append((group["object"], line))
+    lines = [line for told in alike.values() for line in _lines(told)]
     if data["warnings"]:
         lines += ["", "The protocol still requires:", *(f"- {warning}" for warning in data["warnings"])]
     return Result("\n".join(lines), data)
 
 
-def _lines(groups: list[dict[str, Any]]) -> list[str]:
-    """Of objects that differ only in numbers; of more than a few, the first alone is told in full."""
-    if len(groups) <= _FEW:
-        return [_line(group) for group in groups]
-    others = [group["object"] for group in groups[1:]]
-    return [_line(groups[0]), f"- In the same way {len(others):,} more: {_names(others)}."]
+def _lines(told: list[tuple[str, str]]) -> list[str]:
+    """Of (object, its line) that differ only in numbers; of more than a few, the first alone is told in full."""
+    lines = [line for _, line in told]
+    if len(told) <= _FEW:
+        return lines
+    others = [name for name, _ in told[1:]]
+    return [lines[0], f"- In the same way {len(others):,} more: {_names(others)}."]
 
 
 def _line(group: dict[str, Any]) -> str:
