@@ -6,10 +6,12 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.flags import usual_default
-from kb_check.made_here import attributes, bindings, is_new, keywords_and_texts, places
+from kb_build.symbols.taken import NEVER
+from kb_check.made_here import attributes, bindings, is_new, keywords_and_texts, places, statement_of
 from kb_check.script import once_for_each, once_per_script
 
 if TYPE_CHECKING:
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 
@@ -20,18 +22,54 @@ def setting_of(script: Script, node: ast.Name, path: str, before: ast.expr) -> s
     made = bindings(script).get(node.id, [])
     if symbol is None or given is None or not _is_made_by_calls(script, node.id) or len(made) != 1:
         return None
-    match given.get(node.id, []):
-        case []:
-            usual = usual_default(symbol)
-            return usual if isinstance(usual, str) else None
-        case [statement]:
-            making = _assignments(script).get(made[0])
-            is_sure = making is not None and places(script)[making][0] is places(script)[statement][0]
-            value = statement.value.value if isinstance(statement.value, ast.Constant) else None
-            is_before = statement.lineno < before.lineno
-            return value if is_sure and is_before and isinstance(value, str) else None
-        case _:
-            return None
+    statements = given.get(node.id, [])
+    earlier = [statement for statement in statements if statement.lineno < before.lineno]
+    # What comes later in the script may come earlier in time: in a loop, or where a function is called again.
+    is_last = len(earlier) == len(statements)
+    if not earlier:
+        usual = usual_default(symbol)
+        making = _assignments(script).get(made[0])
+        is_new = is_last or (making is not None and _runs_before(script, making, before, at_once=True))
+        return (
+            usual
+            if is_new and isinstance(usual, str) and _stays(script, node, symbol, usual, before)
+            else None
+        )
+    last = max(earlier, key=lambda statement: statement.lineno)
+    value = last.value.value if isinstance(last.value, ast.Constant) else None
+    is_sure = _runs_before(script, last, before, at_once=not is_last) or (
+        len(statements) == 1 and _is_given_where_made(script, made[0], last)
+    )
+    return (
+        value if is_sure and isinstance(value, str) and _stays(script, node, symbol, value, before) else None
+    )
+
+
+def _stays(script: Script, node: ast.Name, symbol: Symbol, value: str, before: ast.expr) -> bool:
+    """Whether a value of a setting is one that no other setting of the node takes away again."""
+    where = next((item.where for item in symbol.enum_items if item.identifier == value), NEVER)
+    if where is None or not where.settings:
+        return where != NEVER
+    if where.how not in {"only", "not"} or len(where.settings) != 1:
+        return False
+    other = script.api.symbols.symbol(f"{symbol.owner}.{where.settings[0].name}")
+    if other is None or any(item.where and item.where.settings for item in other.enum_items):
+        return False
+    given = setting_of(script, node, other.path, before)
+    return given is not None and (given in where.settings[0].values) == (where.how == "only")
+
+
+def _runs_before(script: Script, statement: ast.stmt, place: ast.expr, *, at_once: bool) -> bool:
+    """Whether a statement runs whenever a place of its body is come to: each time ``at_once``, or some time before."""
+    body, first = places(script)[statement]
+    behind = statement_of(body, place)
+    return behind > first and not (at_once and hasattr(body[behind], "body"))
+
+
+def _is_given_where_made(script: Script, made: ast.expr, statement: ast.stmt) -> bool:
+    """Whether a statement is in the body in which a node is made."""
+    making = _assignments(script).get(made)
+    return making is not None and places(script)[making][0] is places(script)[statement][0]
 
 
 @once_for_each

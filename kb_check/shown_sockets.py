@@ -16,11 +16,12 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.flow.types import Instance
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import usual_default
+from kb_build.symbols.records import SHOWN_WHEN
 from kb_check.node_settings import setting_of
 from kb_check.socket_modes import showing
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from kb_build.symbols.records import Symbol
     from kb_check.script import Script
@@ -50,18 +51,66 @@ def socket_classes(script: Script, node: ast.expr) -> Shown | None:
     if not isinstance(owner, ast.Name) or not sockets or len(sockets) < len(row.symbols):
         return None
     deciding = {name for socket in sockets for name in (*showing(socket), *socket.type_settings)}
-    cls = sockets[0].owner
-    settings = {name: setting_of(script, owner, f"{cls}.{name}", node) for name in deciding}
-    known = {name: value for name, value in settings.items() if value is not None}
+    known = _known(script, owner, sockets[0].owner, deciding, node)
     found = [_class_of(script, socket, known) for socket in sockets if not _is_hidden(socket, known)]
-    so = " and ".join(f"`{name}` is {value!r}" for name, value in sorted(known.items()))
-    return Shown(tuple(dict.fromkeys(found)), f" while {so}" if so else "") if found and all(found) else None
+    so = f" while {_said(known)}" if known else ""
+    return Shown(tuple(dict.fromkeys(found)), so) if found and all(found) else None
+
+
+def hidden_by_settings(script: Script, sockets: list[Symbol], node: ast.Subscript) -> str:
+    """What is wrong with asking a node for sockets of one name or identifier that its settings hide, all of them.
+
+    Empty if nothing surely is.
+    """
+    owner = node.value.value if isinstance(node.value, ast.Attribute) else None
+    key = node.slice.value if isinstance(node.slice, ast.Constant) else None
+    if not isinstance(owner, ast.Name) or not isinstance(key, str):
+        return ""
+    if not all(_is_found_while_shown(socket, key) for socket in sockets):
+        return ""
+    cls, side = sockets[0].owner, sockets[0].side
+    alike = [
+        other for other in script.api.sockets(cls, side) if key in {*other.socket_names, other.identifier}
+    ]
+    known = _known(script, owner, cls, {name for socket in alike for name in showing(socket)}, node)
+    hiding = {name: known[name] for socket in alike for name in _hiding(socket, known)}
+    if not alike or not all(_is_hidden(socket, known) for socket in alike):
+        return ""
+    others = {name for socket in script.api.sockets(cls, side) for name in showing(socket)}
+    known |= _known(script, owner, cls, others, node)
+    shown = [other for other in script.api.sockets(cls, side) if not _is_hidden(other, known)]
+    names = dict.fromkeys(repr(socket.label) for socket in shown if not socket.flagged(SHOWN_WHEN))
+    instead = f": {', '.join(names)}" if names else ""
+    return f"A `{cls}` shows no socket {key!r} while {_said(hiding)}, and finds only what it shows{instead}."
+
+
+def _known(
+    script: Script, owner: ast.Name, cls: str, names: Iterable[str], before: ast.expr
+) -> dict[str, str]:
+    """Those settings of a node that are surely known before a place, with their values."""
+    settings = {name: setting_of(script, owner, f"{cls}.{name}", before) for name in names}
+    return {name: value for name, value in settings.items() if value is not None}
+
+
+def _said(settings: Mapping[str, str]) -> str:
+    return " and ".join(f"`{name}` is {value!r}" for name, value in sorted(settings.items()))
+
+
+def _is_found_while_shown(socket: Symbol, key: str) -> bool:
+    """Whether a name or an identifier gives a socket only while its node shows it, or only then has it."""
+    flag = "name-when-shown" if key in socket.socket_names else "identifier-when-shown"
+    return flag in socket.flags or f'{socket.side}["{key}"]' in socket.subscripts
 
 
 def _is_hidden(socket: Symbol, settings: Mapping[str, str]) -> bool:
     """Whether one of some settings surely hides a socket."""
+    return bool(_hiding(socket, settings))
+
+
+def _hiding(socket: Symbol, settings: Mapping[str, str]) -> list[str]:
+    """The names of those of some settings that hide a socket."""
     modes = (mode.partition("=") for mode in socket.modes)
-    return any(name in settings and settings[name] not in values.split("|") for name, _, values in modes)
+    return [name for name, _, values in modes if name in settings and settings[name] not in values.split("|")]
 
 
 def _class_of(script: Script, socket: Symbol, settings: Mapping[str, str]) -> str:

@@ -1,10 +1,12 @@
-"""A socket that a new node does not show, asked for by name or identifier while nothing in the script sets the mode.
+"""A socket that a node does not show as the script has set it, asked for by name or identifier.
 
 Blender finds sockets by these only while the node shows them.
 
 ```python
 points = tree.nodes.new("GeometryNodeDistributePointsOnFaces")
 points.inputs["Density Max"]  # reported: distribute_method must be 'POISSON'
+points.distribute_method = "POISSON"
+points.inputs["Density"]  # reported: it shows "Density Max" now
 zone = tree.nodes.new("GeometryNodeSimulationInput")
 zone.inputs["Geometry"]  # reported: zone.pair_with_output(…) comes first
 ```
@@ -19,8 +21,9 @@ mix.data_type = "RGBA"
 tree.links.new(mix.outputs[0], emission.inputs[0])  # a warning: mix.outputs[2] is the one of colours
 ```
 
-Not reported: nodes that the script did not make itself, passes of the compositor's Render Layers, and scripts that name
-a property of the mode anywhere, compute names or import modules which may change scenes.
+Not reported: nodes that the script did not make itself, passes of the compositor's Render Layers, settings that the
+script may give in a way that is not plain to see, and scripts that compute names or import modules which may change
+scenes.
 """
 
 from __future__ import annotations
@@ -34,6 +37,7 @@ from kb_check.hidden_links import hidden_link
 from kb_check.made_here import is_new, knows_all, named_words
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
+from kb_check.shown_sockets import hidden_by_settings
 from kb_check.socket_modes import deciding, is_by_others, is_internal
 from kb_check.zone_pairing import unpaired
 
@@ -58,7 +62,11 @@ def _check(script: Script) -> Iterator[Finding]:
         if row.value in _asked(script) or any(map(is_by_others, sockets)):
             continue
         owner = node.value.value
-        message = unpaired(script, sockets, node) or _hidden(script, sockets, row)
+        message = (
+            unpaired(script, sockets, node)
+            or _hidden(script, sockets, row)
+            or hidden_by_settings(script, sockets, node)
+        )
         if message and is_new(script, owner):
             yield Finding(RULE.id, "error", script.span(node), message, sockets[0].path)
         elif len(sockets) == 1 and (message := hidden_link(script, sockets[0], node, owner)):
