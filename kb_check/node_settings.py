@@ -22,27 +22,28 @@ def setting_of(script: Script, node: ast.Name, path: str, before: ast.expr) -> s
     made = bindings(script).get(node.id, [])
     if symbol is None or given is None or not _is_made_by_calls(script, node.id) or len(made) != 1:
         return None
+    making = _assignments(script).get(made[0])
     statements = given.get(node.id, [])
-    earlier = [statement for statement in statements if statement.lineno < before.lineno]
+    earlier = [statement for statement in statements if _end(statement) <= (before.lineno, before.col_offset)]
     # What comes later in the script may come earlier in time: in a loop, or where a function is called again.
     is_last = len(earlier) == len(statements)
-    if not earlier:
-        usual = usual_default(symbol)
-        making = _assignments(script).get(made[0])
-        is_new = is_last or (making is not None and _runs_before(script, making, before, at_once=True))
-        return (
-            usual
-            if is_new and isinstance(usual, str) and _stays(script, node, symbol, usual, before)
-            else None
+    if earlier:
+        last = max(earlier, key=_end)
+        value = last.value.value if isinstance(last.value, ast.Constant) else None
+        is_given_where_made = making is not None and places(script)[making][0] is places(script)[last][0]
+        is_sure = _runs_before(script, last, before, at_once=not is_last) or (
+            len(statements) == 1 and is_given_where_made
         )
-    last = max(earlier, key=lambda statement: statement.lineno)
-    value = last.value.value if isinstance(last.value, ast.Constant) else None
-    is_sure = _runs_before(script, last, before, at_once=not is_last) or (
-        len(statements) == 1 and _is_given_where_made(script, made[0], last)
-    )
-    return (
-        value if is_sure and isinstance(value, str) and _stays(script, node, symbol, value, before) else None
-    )
+    else:
+        value = usual_default(symbol)
+        is_sure = is_last or (making is not None and _runs_before(script, making, before, at_once=True))
+    if not is_sure or not isinstance(value, str) or not _stays(script, node, symbol, value, before):
+        return None
+    return value
+
+
+def _end(statement: ast.stmt) -> tuple[int, int]:
+    return statement.end_lineno or 0, statement.end_col_offset or 0
 
 
 def _stays(script: Script, node: ast.Name, symbol: Symbol, value: str, before: ast.expr) -> bool:
@@ -64,12 +65,6 @@ def _runs_before(script: Script, statement: ast.stmt, place: ast.expr, *, at_onc
     body, first = places(script)[statement]
     behind = statement_of(body, place)
     return behind > first and not (at_once and hasattr(body[behind], "body"))
-
-
-def _is_given_where_made(script: Script, made: ast.expr, statement: ast.stmt) -> bool:
-    """Whether a statement is in the body in which a node is made."""
-    making = _assignments(script).get(made)
-    return making is not None and places(script)[making][0] is places(script)[statement][0]
 
 
 @once_for_each
