@@ -1,4 +1,4 @@
-"""Buffers for ``foreach_get`` and ``foreach_set`` that surely are too short, or of other numbers than they take.
+"""Buffers for ``foreach_get`` and ``foreach_set`` that surely are too short, or of something else than they take.
 
 All parts of all items go into one row.
 
@@ -7,6 +7,7 @@ image.pixels.foreach_set(np.ones(len(image.pixels)))  # of 64 bits
 count = len(mesh.vertices)
 mesh.vertices.foreach_get("co", np.zeros(count))  # 3 numbers each
 mesh.vertices.foreach_get("co", np.zeros((count, 3)))  # only the rows count
+mesh.vertices.foreach_set("co", [vertex.co for vertex in vertices])  # vectors in place of numbers
 ```
 """
 
@@ -18,7 +19,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.api import ARRAY
 from kb_build.flow.facts import ELEMENT
-from kb_build.flow.types import FLOAT, Collection, Instance, Sequence
+from kb_build.flow.types import FLOAT, UNKNOWN, Collection, Instance, Sequence, Tuple, Union
+from kb_build.symbols.api_names import COLLECTION
 from kb_check.literals import number, times_bound
 from kb_check.made_here import attributes, callee_path, once_bound
 
@@ -28,8 +30,13 @@ if TYPE_CHECKING:
 
 _FUNCTIONS = frozenset({"foreach_get", "foreach_set"})
 _MAKING = frozenset({"empty", "full", "ones", "zeros"})  # of numpy, by the shape that comes first
+_CONVERTING = frozenset({"array", "asarray"})
+_OF_COLOR = 4
 _OF_DOUBLES = frozenset({"empty", "ones", "zeros"})  # unless they are told otherwise
 _DOUBLES = frozenset({"float", "np.float64", "numpy.float64", "'float64'", "np.double", "'d'"})
+_OF_ITEMS = frozenset(f"{owner}.{name}" for owner in (ARRAY, COLLECTION) for name in _FUNCTIONS)
+_ROWS = frozenset(f"mathutils.{name}" for name in ("Color", "Euler", "Quaternion", "Vector"))
+_EMPTY = Sequence("list", UNKNOWN)
 _RESIZING = frozenset({"append", "extend", "insert", "resize", "shape"})
 
 
@@ -45,24 +52,30 @@ class Short(NamedTuple):
 def short_buffer(script: Script, call: ast.Call) -> Short | None:
     """What is too short of the buffer that a call is given; None where it may be long enough."""
     match call:
-        case ast.Call(
-            func=ast.Attribute(value=items, attr=name), args=[ast.Constant(value=str(attribute)), buffer]
-        ) if name in _FUNCTIONS and callee_path(script, call):
+        case ast.Call(func=ast.Attribute(value=items, attr=name), args=[attribute, buffer]) if (
+            name in _FUNCTIONS and callee_path(script, call)
+        ):
             pass
         case _:
             return None
-    kind = script.type_of(items)
-    element = kind.element if isinstance(kind, Collection) else None
-    member = script.api.member(element.cls, attribute) if isinstance(element, Instance) else None
-    if member is None or not member.symbol.array or not all(member.symbol.array):
-        return None
-    wanted = prod(member.symbol.array)
+    wanted, path = _numbers_of(script, items, attribute)
     shape = _shape(script, buffer)
     length = shape.elts[0] if isinstance(shape, ast.Tuple) and shape.elts else shape
     given = _times(script, length, ast.unparse(items)) if length else None
     if given is None or given >= wanted or not _stays(script, items, buffer):
         return None
-    return Short(wanted, given, member.symbol.path, length is not shape)
+    return Short(wanted, given, path, length is not shape)
+
+
+def _numbers_of(script: Script, items: ast.expr, attribute: ast.expr) -> tuple[int, str]:
+    """How many numbers an item of a collection has of the property that a text names, and its path; 0 for unknown."""
+    kind = script.type_of(items)
+    element = kind.element if isinstance(kind, Collection) else None
+    if not isinstance(element, Instance) or not isinstance(attribute, ast.Constant):
+        return 0, ""
+    member = script.api.member(element.cls, str(attribute.value))
+    array = member.symbol.array if member else ()
+    return (prod(array), member.symbol.path) if member and array and all(array) else (0, "")
 
 
 def _shape(script: Script, buffer: ast.expr) -> ast.expr | None:
@@ -105,6 +118,96 @@ def _stays(script: Script, items: ast.expr, buffer: ast.expr) -> bool:
         isinstance(node.target, ast.Name) and node.target.id in names for node in script.all(ast.AugAssign)
     )
     return not is_resized and not is_extended and all(times_bound(script)[name] <= 1 for name in names)
+
+
+class Rows(NamedTuple):
+    """A buffer of vectors, tuples or lists in place of numbers, and whether it is an array of numpy."""
+
+    buffer: ast.expr
+    is_array: bool
+
+
+def buffer_of_rows(script: Script, call: ast.Call) -> Rows | None:
+    """The buffer that a call is given, if it surely has rows in place of numbers."""
+    match call:
+        case ast.Call(
+            func=ast.Attribute(value=items, attr=name), args=[*attributes, buffer], keywords=[]
+        ) if name in _FUNCTIONS and callee_path(script, call) in _OF_ITEMS:
+            pass
+        case _:
+            return None
+    if _is_of_rows(script, buffer):
+        return Rows(buffer, is_array=False)
+    # An array of numpy goes by the number of its rows, which may be right where each item is one number.
+    wanted = _numbers_of(script, items, attributes[0])[0] if attributes else _OF_COLOR
+    made = once_bound(script, buffer)
+    has_rows = wanted > 1 and isinstance(made, ast.Call) and _makes_rows(script, made, wanted)
+    return Rows(buffer, is_array=True) if has_rows and _stays(script, items, buffer) else None
+
+
+def _makes_rows(script: Script, call: ast.Call, wanted: int) -> bool:
+    """Whether a call of numpy makes an array of rows, each of the numbers of one item."""
+    match call:
+        case ast.Call(func=ast.Attribute(value=ast.Name(id="np" | "numpy"), attr=name), args=[first, *_]) if (
+            all(keyword.arg == "dtype" for keyword in call.keywords)
+        ):
+            pass
+        case _:
+            return False
+    match first:
+        case ast.Tuple(elts=[_, *_, last]) if name in _MAKING:
+            return number(script, last) == wanted
+        case _:
+            return name in _CONVERTING and _is_of_rows(script, first)
+
+
+def _is_of_rows(script: Script, buffer: ast.expr) -> bool:
+    match script.type_of(buffer):
+        case Union(members=members):
+            # What a list holds is not known before something is added.
+            known = [kind for kind in members if kind != _EMPTY or not _is_appended_to(script, buffer)]
+            return bool(known) and all(_holds_rows(kind) for kind in known)
+        case kind:
+            return _holds_rows(kind)
+
+
+def _holds_rows(kind: Type | None) -> bool:
+    match kind:
+        case Tuple(items=items):
+            return bool(items) and all(_is_row(item) for item in items)
+        case Sequence(kind="list" | "tuple", element=Union(members=members)):
+            return all(_is_row(member) for member in members)
+        case Sequence(kind="list" | "tuple", element=element):
+            return _is_row(element)
+        case _:
+            return False
+
+
+def _is_row(kind: Type) -> bool:
+    match kind:
+        case Tuple() | Sequence():
+            return True
+        case Instance(cls=cls, sure=sure):
+            return sure and cls in _ROWS
+        case _:
+            return False
+
+
+def _is_appended_to(script: Script, buffer: ast.expr) -> bool:
+    """Whether a name is that of one empty list, to which items are added one by one."""
+    made = once_bound(script, buffer)
+    if not isinstance(buffer, ast.Name) or not isinstance(made, ast.List) or made.elts:
+        return False
+    adding = {*_RESIZING, "copy", "sort"} - {"append"}
+    is_changed = any(
+        isinstance(node.value, ast.Name) and node.value.id == buffer.id
+        for name in adding
+        for node in attributes(script).get(name, ())
+    )
+    return not is_changed and not any(
+        isinstance(node.target, ast.Name) and node.target.id == buffer.id
+        for node in script.all(ast.AugAssign)
+    )
 
 
 def wide_buffer(script: Script, call: ast.Call) -> ast.Call | None:

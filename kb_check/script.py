@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 # The kinds of parts of a script that may stand for what an add-on registers.
 REGISTERED: frozenset[ResolutionKind] = frozenset({"attribute", "store", "text", "button", "name"})
+_SIMPLE = (ast.Assign, ast.AnnAssign, ast.AugAssign, ast.Expr, ast.Return, ast.Delete)
 _T = TypeVar("_T")
 _Key = TypeVar("_Key", bound="Hashable")
 _Node = TypeVar("_Node", bound=ast.AST)
@@ -226,6 +227,14 @@ class Script:
             return Edit(span, f"{quote}{name}{quote}") if plain and quote not in name else None
         written = node.attr if isinstance(node, ast.Attribute) else getattr(node, "arg", None)
         return Edit(span, name) if text == written else None
+
+    def line_before(self, statement: ast.stmt | None, code: str) -> Edit | None:
+        """The edit that writes a line of its own before a statement; None where it does not begin a line."""
+        if not isinstance(statement, _SIMPLE):
+            return None
+        start = self.span(statement)
+        indent = self.lines[start.line - 1][: start.column]
+        return None if indent.strip() else Edit.before(start, f"{code}\n{indent}")
 
     def as_attribute(self, item: ast.Subscript, name: str) -> Edit:
         """The edit that writes an attribute in the place of an item's brackets."""

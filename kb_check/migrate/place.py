@@ -230,7 +230,7 @@ class Place:
         since: Version = (0, 0)
         if removed:
             since = version_of(successors[0].version if successors else removed[2])
-        elif is_deprecated:
+        else:
             since = max((version_of(reader.arrival(path)[0] or "0.0") for path in uses), default=since)
         return Change(
             rule, tuple(edits), told, source, since, uses, tuple(additions), not is_deprecated, symbol

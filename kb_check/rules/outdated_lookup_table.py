@@ -21,7 +21,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Instance, Plain
-from kb_check.findings import Edit, Finding, Fix
+from kb_check.findings import Finding, Fix
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -34,7 +34,6 @@ _TABLES = frozenset({"bmesh.types.BMVertSeq", "bmesh.types.BMEdgeSeq", _FACES})
 _MAKES = "bmesh.new"
 _ENSURES = frozenset({"ensure_lookup_table", "from_edit_mesh"})
 _ENSURES_FACES = "bmesh.ops.recalc_face_normals"  # of all functions of bmesh the only one, as tried
-_SIMPLE = (ast.Assign, ast.AnnAssign, ast.AugAssign, ast.Expr, ast.Return, ast.Delete)
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -69,13 +68,10 @@ def _check(script: Script) -> Iterator[Finding]:
 
 def _fix(script: Script, statement: ast.stmt | None, text: str) -> Fix | None:
     """The call, in a line of its own before the statement."""
-    if not isinstance(statement, _SIMPLE) or "\n" in text or "(" in text:
+    if "\n" in text or "(" in text:
         return None
-    start = script.span(statement)
-    indent = script.lines[start.line - 1][: start.column]
-    if indent.strip():
-        return None
-    return Fix("Make the table", (Edit.before(start, f"{text}.ensure_lookup_table()\n{indent}"),), sure=True)
+    edit = script.line_before(statement, f"{text}.ensure_lookup_table()")
+    return Fix("Make the table", (edit,), sure=True) if edit else None
 
 
 RULE = Rule("outdated-lookup-table", "error", "An element of a BMesh by index, without the table", _check)

@@ -16,6 +16,7 @@ gpu.types.GPUShader(
 bpy.utils.register_class(Grow())  # reported: Blender makes the instances of its classes, and takes Grow
 bpy.data.meshes.remove(ob.to_mesh())  # reported: ob.to_mesh_clear()
 repeat_input.pair_with_output(simulation_output)  # reported: of another zone
+tree.links.new(noise.outputs["Color"], wave.outputs["Color"])  # reported: two outputs
 ```
 
 What returns None instead of raising an error is a warning. Not reported: what depends on the mode (see
@@ -38,7 +39,7 @@ from kb_build.symbols.records import PAIRS
 from kb_check.calls import CallSite, calls, calls_by_node
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.literals import number
-from kb_check.made_here import OBJECTS_NEW, bindings, callee_path, makers
+from kb_check.made_here import OBJECTS_NEW, bindings, callee_path, makers, once_bound
 from kb_check.node_trees import tree_of
 from kb_check.own_classes import own_classes, plain_classes
 from kb_check.registrations import registrations
@@ -63,6 +64,7 @@ _SIGNED = frozenset({"bmesh.types", "gpu.types", "idprop.types", "imbuf.types"})
 _REGISTERING = frozenset({"bpy.utils.register_class", "bpy.utils.unregister_class"})
 _NOT_AFTER = {"any": "a second time", "other": "after another", "same": "a second time"}
 _FIRST_OF_ZONE, _SECOND_OF_ZONE = "Input", "Output"
+_LINKS_NEW = f"{T}NodeLinks.new"
 _REMOVES_DATA = re.compile(r"bpy\.types\.BlendData\w+\.remove")
 
 
@@ -76,6 +78,7 @@ def _check(script: Script) -> Iterator[Finding]:
     for call in calls(script):
         yield from _removing_of_object(script, call)
         yield from _mispaired(script, call)
+        yield from _of_one_side(script, call)
         refusals = call.callee.symbol.refusals
         if not refusals or call.has_unpacking or not isinstance(call.node.func, ast.Attribute):
             continue
@@ -243,6 +246,28 @@ def _mispaired(script: Script, call: CallSite) -> Iterator[Finding]:
             f"`{call.callee.symbol.path}` takes a `{output}`, the other node of its zone, and no `{kind.cls}`.",
             call.callee.symbol.path, (output,),
         )  # fmt: skip
+
+
+def _of_one_side(script: Script, call: CallSite) -> Iterator[Finding]:
+    """A link of two outputs, or of two inputs."""
+    if call.callee.symbol.path != _LINKS_NEW:
+        return
+    sides = [_side(script, node) for name in ("input", "output") if (node := call.argument(name)) is not None]
+    if sides in (["inputs"] * 2, ["outputs"] * 2) and not is_tried(script, call.node):
+        yield Finding(
+            RULE.id, "error", script.span(call.node),
+            f"`{_LINKS_NEW}` links an output to an input, in any order, and is given two {sides[0]}.", _LINKS_NEW,
+        )  # fmt: skip
+
+
+def _side(script: Script, node: ast.expr) -> str:
+    """Whether an expression is one of a node's ``inputs`` or of its ``outputs``; empty where that is not known."""
+    match once_bound(script, node):
+        case ast.Subscript(value=ast.Attribute(value=owner, attr="inputs" | "outputs" as side)):
+            cls = script.class_of(owner)
+            return side if cls and NODE in script.api.lineage(cls) else ""
+        case _:
+            return ""
 
 
 def _called_properties(script: Script) -> Iterator[Finding]:

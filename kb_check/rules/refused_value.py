@@ -38,7 +38,7 @@ from kb_build.symbols.flags import usual_default
 from kb_build.symbols.paths import last_name
 from kb_build.symbols.taken import NEVER, Setting
 from kb_check.calls import calls_not_ready_for
-from kb_check.findings import Finding
+from kb_check.findings import Finding, Fix
 from kb_check.made_here import (
     alias,
     bindings,
@@ -63,6 +63,7 @@ if TYPE_CHECKING:
 
     from kb_build.flow.types import Resolution
     from kb_build.symbols.records import EnumItem, NewValue, Parameter, Symbol
+    from kb_check.findings import Severity
     from kb_check.script import Script
 
 _OF = re.compile(r"(.+) of an? (\w+)")
@@ -72,8 +73,9 @@ _RESETTING = "bpy.ops.wm.read_factory_settings"
 
 
 class _Setting(NamedTuple):
-    """A setting beside a property, and the values with which an item of that is taken."""
+    """A setting beside a property, ``of``, and the values with which an item of that is taken."""
 
+    of: str
     symbol: Symbol
     values: frozenset[str]
     is_taken: bool
@@ -184,14 +186,14 @@ def _setting(script: Script, symbol: Symbol, item: EnumItem) -> _Setting | None:
         more = where.beside.mode if where.beside else Setting(setting.name, ())
         if other is None or (where.beside and (more.name != setting.name or where.how == "not")):
             return None
-        return _Setting(other, frozenset(setting.values + more.values), where.how == "only")
+        return _Setting(symbol.path, other, frozenset(setting.values + more.values), where.how == "only")
     other = script.api.symbols.symbol(f"{symbol.owner}.type")
     if not where.deciding_things or other is None or "readonly" in other.flags:
         return None
     owner = script.api.symbols.symbol(symbol.owner)
     what = owner.label.lower().split() if owner else []
     values = [_value_of_kind(other, kind, what) for kind in where.deciding_things]
-    return _Setting(other, frozenset(values), where.how == "only") if all(values) else None
+    return _Setting(symbol.path, other, frozenset(values), where.how == "only") if all(values) else None
 
 
 def _value_of_kind(kinds: Symbol, label: str, what: list[str]) -> str:
@@ -210,30 +212,48 @@ def _value_of_kind(kinds: Symbol, label: str, what: list[str]) -> str:
 def _refused_by_setting(
     script: Script, statement: ast.Assign, target: ast.Attribute, setting: _Setting, item: EnumItem
 ) -> Iterator[Finding]:
-    name = setting.symbol.name
+    name, path = setting.symbol.name, setting.symbol.path
     if before := set_before(script, statement, target.value, setting.symbol):
         if isinstance(before, ast.Constant) and setting.refuses(before.value):
-            yield _finding(
-                script, statement.value, item, setting.symbol.path, f"`{name}` is {before.value!r} here"
-            )
-    elif (own := _own_value(script, statement, target.value, setting.symbol)) is not None:
-        if setting.refuses(own):
-            told = "nothing sets it before" if name in named_words(script) else "this script does not set it"
-            why = f"`{name}` of a new one is {own!r}: {told}"
-            yield _finding(script, statement.value, item, setting.symbol.path, why)
-    elif (told := _told_unset(script, name, statement)) is None:
-        return
-    elif owner := _new_owner(script, target.value, setting.symbol):
-        value = owner.value
-        if setting.refuses(value):
-            why = f"`{name}` of a new {' or '.join(owner.made)} is {value!r}: {told}"
-            yield _finding(script, statement.value, item, setting.symbol.path, why)
-    elif all(map(setting.refuses, _values_of_scene(script, setting.symbol))) and _works_on_a_scene(
-        script, target.value
-    ):
-        usual = usual_default(setting.symbol)
-        why = f"in a new scene `{name}` is {usual!r}: {told}"
-        yield replace(_finding(script, statement.value, item, setting.symbol.path, why), severity="warning")
+            yield _finding(script, statement.value, item, path, f"`{name}` is {before.value!r} here")
+    elif told := _as_it_is_new(script, statement, target, setting):
+        why, severity = told
+        found = replace(_finding(script, statement.value, item, path, why), severity=severity)
+        yield _set_first(script, statement, target, setting, found)
+
+
+def _as_it_is_new(
+    script: Script, statement: ast.Assign, target: ast.Attribute, setting: _Setting
+) -> tuple[str, Severity] | None:
+    """What a setting is that nothing has set, in words, where a value is refused with that; and how sure it is."""
+    name = setting.symbol.name
+    if (own := _own_value(script, statement, target.value, setting.symbol)) is not None:
+        told = "nothing sets it before" if name in named_words(script) else "this script does not set it"
+        return (f"`{name}` of a new one is {own!r}: {told}", "error") if setting.refuses(own) else None
+    if (told := _told_unset(script, name, statement)) is None:
+        return None
+    if owner := _new_owner(script, target.value, setting.symbol):
+        why = f"`{name}` of a new {' or '.join(owner.made)} is {owner.value!r}: {told}"
+        return (why, "error") if setting.refuses(owner.value) else None
+    is_refused = all(map(setting.refuses, _values_of_scene(script, setting.symbol)))
+    if is_refused and _works_on_a_scene(script, target.value):
+        return f"in a new scene `{name}` is {usual_default(setting.symbol)!r}: {told}", "warning"
+    return None
+
+
+def _set_first(
+    script: Script, statement: ast.Assign, target: ast.Attribute, setting: _Setting, found: Finding
+) -> Finding:
+    """A finding where nothing sets a setting, with the fix that does, where one value alone will do."""
+    owner, name = script.text(script.span(target.value)), setting.symbol.name
+    is_plain = setting.is_taken and len(setting.values) == 1 and not set("(\n") & set(owner)
+    if not is_plain or name in named_words(script):
+        return found
+    edit = script.line_before(statement, f"{owner}.{name} = {next(iter(setting.values))!r}")
+    if edit is None:
+        return found
+    fix = Fix(f"Set {name} first", (edit,), sure=True)
+    return replace(found, symbol=setting.of, instead=(setting.symbol.path,), fix=fix)
 
 
 def _told_unset(script: Script, name: str, statement: ast.stmt) -> str | None:

@@ -8,6 +8,7 @@ Vector((1, 2, 3)).w  # reported
 x, y = ob.location  # reported: 3 components
 Matrix.Identity(5)  # reported: 2 to 4
 mesh.vertices.foreach_get("co", np.zeros(len(mesh.vertices)))  # reported: 3 numbers for each
+mesh.vertices.foreach_set("co", [(0, 0, 0), (1, 0, 0)])  # reported: it takes one row of numbers
 ```
 
 Not reported: sizes that are not written in the script or told by the API, scripts that resize any, and what stands in a
@@ -20,7 +21,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_check.buffers import short_buffer
+from kb_check.buffers import buffer_of_rows, short_buffer
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.literals import number
 from kb_check.made_here import callee_path
@@ -40,12 +41,14 @@ from kb_check.tried import is_tried
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kb_check.buffers import Rows
     from kb_check.mathutils_sizes import Size
     from kb_check.script import Script
 
 _SIGNS: dict[type[ast.operator], str] = {ast.MatMult: "@", ast.Add: "+", ast.Sub: "-", ast.Mult: "*"}
 _AXES = "xyzw"
 _READ = re.compile(rf"[{_AXES}]+|translation")  # what a vector or a matrix of some sizes lacks
+_SHOWN = 60  # characters of code that a sentence has room for
 _SPACE = 3  # components of what is in space
 _ROTATION, _WHOLE = (3, 3), (4, 4)
 _SIZES = range(2, 5)
@@ -151,11 +154,28 @@ def _call(script: Script, call: ast.Call) -> Finding | None:
 
 
 def _buffer(script: Script, call: ast.Call) -> Finding | None:
+    if rows := buffer_of_rows(script, call):
+        return _of_rows(script, call, rows)
     if (short := short_buffer(script, call)) is None:
         return None
     rows = ", of which the rows count: `.ravel()` makes one row" if short.has_rows else ""
     told = f"`{short.path}` has {short.wanted} numbers for each, and this buffer has room for {short.given}{rows}."
     return _finding(script, call.args[1], told, short.path)
+
+
+def _of_rows(script: Script, call: ast.Call, rows: Rows) -> Finding:
+    row = "{}.ravel()" if rows.is_array else "[number for row in {} for number in row]"
+    text = script.text(script.span(rows.buffer))
+    shown = row.format(text if len(text) <= _SHOWN and "\n" not in text else "…")
+    path = callee_path(script, call)
+    told = f"`{path}` takes one row of numbers, and these are rows of their own: `{shown}`."
+    gets_list = not rows.is_array and path.endswith("get")  # and would fill another one
+    fix = (
+        None
+        if gets_list
+        else Fix("Write one row of numbers", (Edit(script.span(rows.buffer), row.format(text)),), sure=True)
+    )
+    return _finding(script, rows.buffer, told, path, fix)
 
 
 def _made(script: Script, node: ast.expr, path: str) -> Finding | None:

@@ -61,6 +61,16 @@ def test_what_the_target_still_takes_stays_for_a_version_that_lacks_the_new_form
     assert migrated(checker, code, (4, 5)).new == code
 
 
+def test_a_setting_that_a_value_needs_now_is_set_first_where_it_is(checker: Checker) -> None:
+    video = "settings.file_format = 'FFMPEG'\n"
+    start = "import bpy\nsettings = bpy.context.scene.render.image_settings\n"
+    kind = "settings.media_type = 'VIDEO'\n"
+    assert migrated(checker, start + video).new == start + kind + video
+    kept = migrated(checker, start + video, (4, 2))
+    assert kept.new == f"{start}if bpy.app.version >= (5, 0, 0):\n    {kind}    {video}else:\n    {video}"
+    assert kept.kept == kept.decisions == []
+
+
 @pytest.mark.parametrize("keep", [(3, 6), (2, 79)])
 def test_no_guard_gives_an_older_version_what_came_later(checker: Checker, keep: tuple[int, int]) -> None:
     code = "import bpy\nbpy.context.scene.render.engine = 'BLENDER_EEVEE_NEXT'\n"

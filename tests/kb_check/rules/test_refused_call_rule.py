@@ -52,6 +52,14 @@ empty = bpy.data.objects.new("empty", None)
 f = empty.modifiers.new("Array", "ARRAY")
 empty.vertex_groups.new(name="group")
 ob.vertex_groups.new(name="group")
+tree = bpy.data.materials.new("material").node_tree
+noise = tree.nodes.new("ShaderNodeTexNoise")
+wave = tree.nodes.new("ShaderNodeTexWave")
+color = wave.outputs["Color"]
+tree.links.new(noise.outputs[1], color)
+tree.links.new(color, noise.inputs["Scale"])
+tree.links.new(noise.inputs["Scale"], color)
+tree.links.new(input=noise.inputs["Scale"], output=noise.inputs["Vector"])
 g = curve.id_data and bpy.data.objects.new("curve", curve).modifiers.new("Array", "ARRAY")
 """
 

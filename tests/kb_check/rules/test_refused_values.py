@@ -9,6 +9,8 @@ from other_versions import base_of
 from statements_in_blender import run_statements
 
 from kb_check.checker import Checker
+from kb_check.fixes import apply_fixes
+from kb_check.source import Source
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -504,3 +506,23 @@ def test_a_copy_of_the_context_is_a_dictionary_in_each_version() -> None:
         (found,) = checker.check(code)
     assert found.severity == "error"
     assert found.span.line == 3
+
+
+_UNSET = """\
+import bpy
+scene = bpy.context.scene
+settings = scene.render.image_settings
+"""
+
+
+def test_the_setting_that_a_value_needs_is_set_by_the_fix(rule_checker: Checker, tmp_path: Path) -> None:
+    for line in (
+        "scene.render.image_settings.file_format = 'FFMPEG'", "settings.file_format = 'OPEN_EXR_MULTILAYER'",
+    ):  # fmt: skip
+        code = _UNSET + line
+        found = rule_checker.check(code, rules=["refused-value"])
+        assert [one.span.line for one in found] == [4]
+        mended = apply_fixes(Source(code), found).text.splitlines()
+        assert len(mended) == 5
+        answers = run_statements(tmp_path, mended)
+        assert [error for error, *_ in answers] == [""] * 5

@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING
 import pytest
 from statements_in_blender import run_statements
 
+from kb_check.fixes import apply_fixes
+from kb_check.source import Source
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -105,6 +108,42 @@ long = np.empty(3 * count)
 grown = [0.0] * count
 grown += [0.0] * 2 * count
 """
+
+
+_ROWS = """\
+import bpy
+import numpy as np
+from mathutils import Vector
+mesh = bpy.data.objects["Cube"].data
+corners = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0)] * 2
+points = [(float(number), 0.0, 0.0) for number in range(8)]
+added = []
+for number in range(8): added.append((number, 0, 0))
+numbers = []
+for point in points: numbers.extend(point)
+summed = []
+for point in points: summed += point
+"""
+
+
+def test_buffers_of_rows_are_told_and_fixed(check: Check, tmp_path: Path) -> None:
+    made = _ROWS.splitlines()
+    buffers = (
+        "points", "added", "numbers", "summed", "[vertex.co for vertex in mesh.vertices]", "np.array(points)",
+        "[Vector(point) for point in points]", "np.asarray(points, dtype=np.float32)", "np.zeros((8, 3))",
+        "[number for point in points for number in point]", "np.array(points).ravel()", "np.zeros((1, 24))[0]",
+    )  # fmt: skip
+    lines = [f"mesh.vertices.foreach_set('co', {buffer})" for buffer in buffers]
+    lines += ["mesh.polygons.foreach_set('material_index', [(0,)] * 6)"]
+    lines += ["bpy.data.images.new('i', 2, 2).pixels.foreach_set([(0.0, 0.0, 0.0, 1.0)] * 4)"]
+    answers = run_statements(tmp_path, [*made, *lines])[len(made) :]
+    refused = [line for line, (error, *_) in zip(lines, answers, strict=True) if error]
+    found = check("wrong-size", code := "\n".join([*made, *lines]))
+    assert [lines[one.span.line - len(made) - 1] for one in found] == refused
+    assert 8 < len(refused) < len(lines)
+    mended = apply_fixes(Source(code), found).text
+    answers = run_statements(tmp_path, mended.splitlines())
+    assert [error for error, *_ in answers if error] == []
 
 
 def test_buffers_are_told_that_blender_finds_too_short(check: Check, tmp_path: Path) -> None:
