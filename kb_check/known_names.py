@@ -15,6 +15,7 @@ from kb_serve.recognise.names.corrections import by_first_word, is_misspelling, 
 from kb_serve.recognise.names.enum_values import EnumValues
 from kb_serve.recognise.names.likely_keywords import likely_parameters
 from kb_serve.recognise.names.likely_values import likely_values
+from kb_serve.recognise.names.names_of_new import NamesOfNew
 from kb_serve.recognise.names.node_names import is_like_a_node, nodes_meant
 from kb_serve.recognise.names.operator_words import OperatorWords, same_operator_words
 from kb_serve.recognise.names.set_elsewhere import set_elsewhere
@@ -64,6 +65,7 @@ class KnownNames:
         self._notes = Notes(reader)
         self._operators = OperatorWords(reader)
         self._enum_values = EnumValues(reader)
+        self.names_of_new = NamesOfNew(reader)
         self._member = lru_cache(maxsize=_KEPT)(self._former_member)
         self._lacking = lru_cache(maxsize=_KEPT)(self._lacking_member)
 

@@ -530,6 +530,10 @@ class BaseReader:
         rows = self.rows_of("SELECT path, call, maker, choice FROM creation WHERE path", paths)
         return {row[0]: Creation(*row[1:]) for row in rows}
 
+    def calls_of(self, maker: str) -> list[tuple[str, str]]:
+        """(call, its choice) of all that a function makes."""
+        return self.rows("SELECT call, choice FROM creation WHERE maker = ? ORDER BY path", maker)
+
     def made_by_call(self, call: str) -> str:
         """The class of which a call makes an instance; empty for none."""
         return next((row[0] for row in self.rows("SELECT path FROM creation WHERE call = ?", call)), "")

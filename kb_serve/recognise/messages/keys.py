@@ -10,6 +10,7 @@ from kb_build.symbols.api_names import COLLECTION, STRUCT, TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.messages.guides import EXTENSIONS
 from kb_serve.recognise.messages.labelled_nodes import sockets_of_labelled_nodes
+from kb_serve.recognise.names.names_of_new import NamesOfNew
 from kb_serve.recognise.removed.newer_nodes import tell_of_the_newer_node
 from kb_serve.recognise.resolving.subscripts import CustomProperties
 
@@ -41,12 +42,20 @@ _OF_ADDONS = (
 )
 
 
+# What has a name of its own when it is new → what it is, and the operator that adds one.
+_HOLDERS = {
+    "modifiers": ("modifier", "bpy.ops.object.modifier_add"),
+    "constraints": ("constraint", "bpy.ops.object.constraint_add"),
+}
+
+
 class Keys:
     """Finds in one base what a key may have meant."""
 
     def __init__(self, reader: BaseReader, sockets: FormerSockets) -> None:
         self._reader = reader
         self._sockets = sockets
+        self._names_of_new = NamesOfNew(reader)
 
     def explain(self, query: str, recognition: Recognition) -> None:
         """Adds notes on each key, and a socket that had it as its name in another version."""
@@ -75,6 +84,7 @@ class Keys:
             within = re.findall(_LOOKED_INTO.format(re.escape(name)), query)
             gone = [one for one in recognition.removed if one.path.rpartition(".")[2] in within]
             recognition.removed = [one for one in recognition.removed if one not in gone]
+            self._as_new(name, query, recognition)
         for rank, path in enumerate(sockets_of_labelled_nodes(name, query, self._reader)):
             recognition.add(path, 0.98 - 0.01 * rank, "error message")
         if recognition.removed or any(match.sure >= 0.9 for match in recognition.matches):
@@ -91,3 +101,16 @@ class Keys:
         still_taken = self._sockets.explain(name, query, recognition)
         if not still_taken and not recognition.removed:
             recognition.add(f"{COLLECTION}.get", 0.9, "error message")
+
+    def _as_new(self, name: str, query: str, recognition: Recognition) -> None:
+        """What a modifier or a constraint is called that nobody gave a name."""
+        for holder, (what, adds) in _HOLDERS.items():
+            meant = self._names_of_new.meant(holder, name)
+            if meant is None or any(other in query for other in _HOLDERS.keys() - {holder}):
+                continue
+            recognition.notes.append(
+                f'A {what} of type {meant.choice!r} is called "{meant.name}" where it gets no name, as by '
+                f"`{adds}(type={meant.choice!r})`. Better keep what makes it: `{holder[:-1]} = "
+                f"obj.{holder}.new(…)`."
+            )
+            recognition.add(f"{TYPES}Object.{holder}", 0.95, "error message")

@@ -352,6 +352,14 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
             '`action.slots["OBCube"]`',
         ),
         (
+            "KeyError: 'bpy_prop_collection[key]: key \"Geometry Nodes\" not found'",
+            "A modifier of type 'NODES' is called \"GeometryNodes\" where it gets no name",
+        ),
+        (
+            "ob.constraints['TrackTo']\nKeyError: 'bpy_prop_collection[key]: key \"TrackTo\" not found'",
+            "A constraint of type 'TRACK_TO' is called \"Track To\"",
+        ),
+        (
             "key \"permissions\" invalid: permissions must be a table of strings, not a <class 'list'>",
             '`[permissions]`, below it `network = "Loads maps from the net"`.',
         ),
