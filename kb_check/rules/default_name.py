@@ -7,8 +7,16 @@ ob.constraints.new("TRACK_TO")
 ob.constraints["TrackTo"]  # a warning: it is called "Track To"
 ```
 
-It is a warning, since the file may have one that is called so. Not reported: names that stand anywhere else in the
-script, types of which the script adds none without a name, scripts that compute names, and what stands in a ``try``.
+The key of an action's slot is its identifier, which begins with two letters for the type of data:
+
+```python
+action.slots.new(id_type="OBJECT", name="Cube")
+action.slots["Cube"]  # an error: its key is "OBCube"
+```
+
+The others are warnings, since the file may have one that is called so. Not reported: names that stand anywhere else in
+the script, types of which the script adds none without a name, scripts that compute names, and what stands in a
+``try``.
 """
 
 from __future__ import annotations
@@ -16,7 +24,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Collection
+from kb_build.flow.types import Collection, Instance
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls import calls
 from kb_check.findings import Edit, Finding, Fix
@@ -31,6 +39,7 @@ if TYPE_CHECKING:
 
     from kb_check.script import Script
 
+_SLOT = Instance(f"{T}ActionSlot")
 # What adds one of some type without a name → the members that hold what it adds.
 _ADDING = {
     "bpy.ops.object.modifier_add": "modifiers",
@@ -47,12 +56,19 @@ def _check(script: Script) -> Iterator[Finding]:
     for node in script.all(ast.Subscript):
         match node:
             case ast.Subscript(
-                value=ast.Attribute(attr="modifiers" | "constraints" as holder) as items,
+                value=ast.Attribute(attr="modifiers" | "constraints" | "slots" as holder) as items,
                 slice=ast.Constant(value=str(asked)) as key,
-            ) if isinstance(script.type_of(items), Collection):
+            ) if isinstance(kind := script.type_of(items), Collection):
                 pass
             case _:
                 continue
+        if kind.element == _SLOT and asked in _slots(script) and not is_tried(script, node, LACKS_KEY):
+            yield Finding(
+                RULE.id, "error", script.span(key),
+                f"The key of a slot is its `identifier`, two letters for the type of data and the name: that of the "
+                f"slot {asked!r} of an object is {'OB' + asked!r}.",
+                f"{T}ActionSlot.identifier",
+            )  # fmt: skip
         meant = script.names.names_of_new.meant(holder, asked)
         makers = _makers(script).get((holder, meant.choice)) if meant else None
         if meant and makers and asked not in texts_but_keys(script) and not is_tried(script, node, LACKS_KEY):
@@ -62,6 +78,17 @@ def _check(script: Script) -> Iterator[Finding]:
                 f"{asked!r}. Better keep what `{holder}.new` returns.",
                 makers, (), Fix(f"Write {meant.name!r}", (Edit(script.span(key), repr(meant.name)),)),
             )  # fmt: skip
+
+
+@once_per_script
+def _slots(script: Script) -> frozenset[str]:
+    """The names that the script gives new slots of actions."""
+    made = (
+        call.argument("name") for call in calls(script) if call.callee.symbol.path == f"{T}ActionSlots.new"
+    )
+    return frozenset(
+        name.value for name in made if isinstance(name, ast.Constant) and isinstance(name.value, str)
+    )
 
 
 @once_per_script

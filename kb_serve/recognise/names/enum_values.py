@@ -215,10 +215,12 @@ class EnumValues:
         items = next(named, ()) if parameter else symbol.enum_items
         return tuple(item for item in items if item.is_taken)
 
-    def _is_word(self, owner: str, values: Iterable[str]) -> bool:
-        """Whether the values that an enumeration has are those that it shows to people."""
+    def _is_word(self, owner: str, values: Sequence[str]) -> bool:
+        """Whether the values that an enumeration has are words of people too: as it shows them, or names of classes."""
         held = [item for item in self._items(owner) if item.identifier in values]
-        return bool(held) and all(item.identifier == item.name for item in held)
+        return (bool(held) and all(item.identifier == item.name for item in held)) or all(
+            map(self._is_class, values)
+        )
 
     def _is_class(self, value: str) -> bool:
         """Whether a label, ``Matrix``, is the name of a class: then it is hardly meant as an item."""

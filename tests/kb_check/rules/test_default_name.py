@@ -70,6 +70,10 @@ ob.modifiers["Subdivision"].levels = 2
 ob.modifiers["Bevel"]
 ob.constraints["TrackTo"]
 ob.constraints["Track To"].influence = 0.5
+action = bpy.data.actions.new("action")
+slot = action.slots.new(id_type='OBJECT', name="Cube")
+action.slots["OBCube"]
+action.slots["Cube"]
 """
 
 
@@ -92,8 +96,8 @@ def test_names_that_new_ones_do_not_have_are_told_and_mended(check: Check, tmp_p
     lines: list[str] = [*_CODE.splitlines()]
     refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
     found = check("default-name", _CODE)
-    assert [one.span.line for one in found] == refused == [7, 9, 10, 13]
-    mended = apply_fixes(Source(_CODE), found, unsafe=True).text.splitlines()
+    assert [one.span.line for one in found] == refused == [7, 9, 10, 13, 18]
+    mended: list[str] = apply_fixes(Source(_CODE), found, unsafe=True).text.splitlines()[:-1]
     assert [error for error, *_ in run_statements(tmp_path, mended) if error] == []
 
 
