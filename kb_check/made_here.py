@@ -34,8 +34,8 @@ _HARMLESS = (sys.stdlib_module_names - {"runpy", "importlib"}) | {
 # Of Blender's own helpers, the modules and functions of which the same is true.
 _HARMLESS_HELPERS = frozenset(
     {
-        "bpy_extras.io_utils", "bpy_extras.mesh_utils", "bpy_extras.object_utils.world_to_camera_view",
-        "bpy_extras.view3d_utils",
+        "bpy_extras.anim_utils", "bpy_extras.io_utils", "bpy_extras.mesh_utils", "bpy_extras.view3d_utils",
+        "bpy_extras.object_utils.world_to_camera_view", "rna_prop_ui",
     }
 )  # fmt: skip
 _DOTS = 3  # of the path of an operator; that of a module has fewer

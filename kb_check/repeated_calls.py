@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import walk
-from kb_check.made_here import named_words, places
-from kb_check.mode_keeping import own_names
+from kb_check.made_here import bindings, named_words, places
+from kb_check.mode_keeping import is_harmless, own_names
 from kb_check.script import once_for_each, once_per_script
 
 if TYPE_CHECKING:
@@ -23,9 +23,12 @@ _REMOVING = frozenset({"remove", "clear", "read_homefile", "open_mainfile", "rea
 
 @dataclass(frozen=True, slots=True)
 class _Body:
-    """Places in a body of statements, in order: of what may remove things, and by name of what binds one."""
+    """Places in a body of statements, in order: of what may remove things, of what may make another object the active
+    one, and by name of what binds one.
+    """
 
     removing: list[int] = field(default_factory=list[int])
+    activating: list[int] = field(default_factory=list[int])
     binding: defaultdict[str, list[int]] = field(default_factory=lambda: defaultdict[str, list[int]](list))
 
 
@@ -41,9 +44,9 @@ def follows(script: Script, before: ast.Call, call: ast.Call, owner: ast.expr) -
     if body is not other:
         return False
     held = _body(script, body[0])
-    return not _is_between(held.removing, start, end) and not _is_between(
-        held.binding.get(root.id, ()), start, end
-    )
+    # What is read from the context is that of the object which is active at the time.
+    changing = held.binding.get(root.id, ()) if root.id in bindings(script) else held.activating
+    return not _is_between(held.removing, start, end) and not _is_between(changing, start, end)
 
 
 @once_per_script
@@ -62,6 +65,10 @@ def _body(script: Script, first: ast.stmt) -> _Body:
             match node:
                 case ast.Attribute(attr=name) if name in removing:
                     body.removing.append(place)
+                case ast.Attribute(attr="active", ctx=ast.Store()) | ast.Attribute(attr="select_set"):
+                    body.activating.append(place)
+                case ast.Call() if not is_harmless(script, node):
+                    body.activating.append(place)
                 case ast.Name(id=name):
                     if name in removing:
                         body.removing.append(place)

@@ -107,3 +107,11 @@ def test_a_new_file_before_it_is_no_reason_to_pass_a_second_call(check: Check) -
     assert not check("refused-call", start + call + "bpy.ops.wm.read_homefile()\n" + call)
     helper = "def fresh():\n    bpy.ops.wm.read_homefile()\n"
     assert not check("refused-call", start + helper + call + "fresh()\n" + call)
+
+
+@pytest.mark.parametrize("active", ["bpy.context.object", "bpy.context.active_object"])
+def test_the_active_object_may_be_another_behind_an_operator(check: Check, active: str) -> None:
+    call = f'{active}.modifiers.new("Cloth", "CLOTH")\n'
+    assert len(check("refused-call", f"import bpy\n{call}{active}.name = 'Cloth'\n{call}")) == 1
+    for between in ("bpy.ops.mesh.primitive_cube_add()", "bpy.context.view_layer.objects.active = other"):
+        assert not check("refused-call", f"import bpy\n{call}{between}\n{call}")
