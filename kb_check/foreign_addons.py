@@ -1,4 +1,4 @@
-"""Add-ons that scripts enable and that nobody can look into here: what they register may be anything.
+"""Add-ons that scripts enable, or ask for, and that nobody can look into here: what they register may be anything.
 
 Those are the ones that neither Blender brings nor the files that are checked together are. What those register that
 Blender brings is known.
@@ -7,6 +7,7 @@ Blender brings is known.
 from __future__ import annotations
 
 import ast
+import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import ADDONS
@@ -27,6 +28,7 @@ _ENABLING = {
     "enable": "module_name",  # addon_utils
 }
 _BY_PLACE = "addon_utils"
+_LISTED = re.compile(r"\.addons(\.keys\(\))?$")  # those that are enabled, in the preferences
 # The classes that add-ons give properties to; a file's own data and Blender's settings are hardly among them.
 _HOLDERS = tuple(
     f"{T}{name}"
@@ -54,7 +56,7 @@ def may_register(api: Api, owner: str) -> bool:
 
 
 def foreign_addon(analyses: Collection[Analysis], own: Collection[str]) -> str:
-    """The first foreign add-on that scripts enable; empty for none. ``own`` are the dotted names of the files."""
+    """The first foreign add-on that scripts enable or ask for; empty for none. ``own`` are the files' dotted names."""
     parts = {part for name in own for part in name.split(".")}
     for analysis in analyses:
         for name in _enabled(analysis):
@@ -64,7 +66,7 @@ def foreign_addon(analyses: Collection[Analysis], own: Collection[str]) -> str:
 
 
 def brought_addons(analyses: Collection[Analysis]) -> frozenset[str]:
-    """The add-ons that Blender brings which scripts enable, or take something from."""
+    """The add-ons that Blender brings which scripts enable, ask for, or take something from."""
     return frozenset(
         name
         for analysis in analyses
@@ -86,9 +88,17 @@ def _imported(analysis: Analysis) -> Iterator[str]:
 
 
 def _enabled(analysis: Analysis) -> Iterator[str]:
-    """The names of the add-ons that a script enables, as far as they stand in it."""
+    """The names of the add-ons that a script enables, or asks for, as far as they stand in it."""
     for node in walk(analysis.tree) if analysis.tree else ():
         match node:
+            case ast.Compare(left=asked, ops=[ast.In() | ast.NotIn()], comparators=[addons]) if (
+                _LISTED.search(ast.unparse(addons))
+            ):
+                yield from literal_texts(analysis.types.get(asked, UNKNOWN))
+            case ast.Call(func=ast.Attribute(value=owner, attr="get" | "check"), args=[asked, *_]) if (
+                _LISTED.search(owned := ast.unparse(owner)) or owned == _BY_PLACE
+            ):
+                yield from literal_texts(analysis.types.get(asked, UNKNOWN))
             case ast.Call(func=ast.Attribute(value=owner, attr=called)) if called in _ENABLING:
                 is_by_place = isinstance(owner, ast.Name) and owner.id == _BY_PLACE
                 if called == "enable" and not is_by_place:

@@ -31,6 +31,7 @@ from kb_build.index.creation import with_whole_calls
 from kb_build.symbols.api_names import HANDLERS, TYPES
 from kb_build.symbols.handlers import handlers_type
 from kb_build.symbols.records import (
+    NODE_TYPE,
     EnumItem,
     Link,
     Page,
@@ -109,6 +110,7 @@ class _Raw:
     header: dict[str, Any] = field(default_factory=dict)
     symbols: dict[str, dict[str, Any]] = field(default_factory=dict)
     trees: dict[str, list[str]] = field(default_factory=dict)
+    node_types: dict[str, str] = field(default_factory=dict)
     manual: list[tuple[str, str]] = field(default_factory=list)
     templates: list[tuple[str, str]] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
@@ -140,6 +142,7 @@ def _keep(raw: _Raw, record: str, row: dict[str, Any]) -> None:
             raw.header = row
         case "node":
             raw.trees[row["path"]] = row["trees"]
+            raw.node_types[row["path"]] = row["type"]
         case "manual":
             raw.manual.append((row["pattern"], row["page"]))
         case "enum_neighbours":
@@ -389,6 +392,8 @@ def _correct(raw: _Raw) -> None:
     for owner, trees in raw.trees.items():
         if owner in raw.symbols:
             raw.symbols[owner]["trees"] = trees
+            held = raw.symbols[owner].get("flags", ())
+            raw.symbols[owner]["flags"] = [*held, f"{NODE_TYPE}{raw.node_types[owner]}"]
     for holder, tree in _TREES.items():
         if holder in raw.symbols and f"bpy.types.{tree}" in raw.symbols:
             raw.symbols[holder]["target"] = tree

@@ -46,12 +46,13 @@ from kb_build.flow.types import (
     members,
     union,
 )
-from kb_build.symbols.api_names import COLLECTION, GROUPS, ID, OBJECT, OPERATORS, STRUCT
+from kb_build.symbols.api_names import COLLECTION, GROUPS, ID, NODE, OBJECT, OPERATORS, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.math_classes import math_class
 from kb_build.symbols.object_data import OBJECT_DATA, OF_EMPTIES, data_class
 from kb_build.symbols.paths import argument_of, is_socket, plain_path
 from kb_build.symbols.python_values import is_new_list
+from kb_build.symbols.records import NODE_TYPE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -437,10 +438,21 @@ class Api:
             key, label = (_SIMPLE.sub("", text.lower()) for text in (item.identifier, item.name))
             if path := by_name.get(key) or by_label.get(key) or by_label.get(label):
                 found[item.identifier] = path
+        if base == NODE:
+            found |= self._nodes_by_type()
         for value, name in CLASS_OF_VALUE.get(short, {}).items():
             if self.is_class(T + name):
                 found[value] = T + name
         return found
+
+    def _nodes_by_type(self) -> dict[str, str]:
+        """The value of ``type`` → the class of nodes, of those that nodes of one class alone have."""
+        classes: dict[str, list[str]] = {}
+        for path in self.descendants(NODE):
+            symbol = self.symbols.symbol(path)
+            for value in symbol.flagged(NODE_TYPE) if symbol else ():
+                classes.setdefault(value, []).append(path)
+        return {value: paths[0] for value, paths in classes.items() if len(paths) == 1}
 
     def settable_kind(self, cls: str) -> str:
         """The base of a class whose instances become one of another class below it by a setting; empty for none."""

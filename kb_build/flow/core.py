@@ -196,15 +196,42 @@ class Core:
 
     def doubt_denials(self) -> None:
         """Marks as unsure what was found missing in what turned out to be more, and was not read again."""
-        current: dict[int, bool] = {}
+        told_more: dict[int, frozenset[str] | None] = {}
         for resolutions, node, reader in self._denials:
             row = resolutions.get(node)
             if row is None or not row.missing or not row.sure:
                 continue
-            if id(reader) not in current:
-                current[id(reader)] = self.is_current(reader)
-            if not current[id(reader)]:
+            if id(reader) not in told_more:
+                told_more[id(reader)] = self._given_later(reader)
+            later = told_more[id(reader)]
+            if later is None or row.value in later:
                 resolutions[node] = replace(row, sure=False)
+
+    def _given_later(self, reader: Reader) -> frozenset[str] | None:
+        """The names that classes had not when a function or a module asked, and were given: of what follows from them
+        nothing was known. None where it took what turned out to be something else.
+        """
+        if self.is_current(reader):
+            return frozenset()
+        changed = {
+            key: kind
+            for key, kind in reader.readings.items()
+            if not isinstance(key[1], str) or self._known(key[0], key[1]) != kind
+        }
+        names: set[str] = set()
+        for (number, name), kind in changed.items():
+            if not isinstance(name, str):
+                if not self.returns_still(number, name, kind):
+                    return None
+            elif not name or kind is not None or self._has_by_api(number, name):
+                return None
+            else:
+                names.add(name)
+        return frozenset(names)
+
+    def _has_by_api(self, number: int, name: str) -> bool:
+        """Whether a class has a name by those of the API that it derives from."""
+        return any(self.api.member(base, name) for base in self.api_bases(number)[0])
 
     @property
     def reader(self) -> Reader:

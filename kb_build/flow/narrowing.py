@@ -29,6 +29,8 @@ from kb_build.flow.types import (
 )
 from kb_build.symbols.api_names import OBJECT
 
+_AREA, _SPACE, _ACTIVE_SPACE = "bpy.types.Area", "bpy.types.Space", "spaces.active"
+
 
 class Narrowing(Guards):
     """Applies conditions to what names and chains hold."""
@@ -153,6 +155,9 @@ class Narrowing(Guards):
     def _told_apart(self, node: ast.expr, values: list[str]) -> None:
         """A value whose ``type`` is one of ``values``."""
         kind = without_none(self._type_of(node))
+        if isinstance(kind, Instance) and kind.cls == _AREA:
+            self._know_space(node, values)
+            return
         found: list[Type] = []
         for member in members(kind):
             if not isinstance(member, Instance):
@@ -167,6 +172,12 @@ class Narrowing(Guards):
                     found.append(member)
         if found and (result := union(found)) is not UNKNOWN:
             self._know(node, result)
+
+    def _know_space(self, area: ast.expr, values: list[str]) -> None:
+        """The active space of an area whose type is one of ``values`` is one of theirs."""
+        spaces = [self.api.class_of_value(_SPACE, value) for value in values]
+        if (text := chain_text(area)) and all(spaces):
+            self.here.scope.state.chains[f"{text}.{_ACTIVE_SPACE}"] = union(map(Instance, spaces))
 
     def _is_instance(self, name: str, call: ast.Call) -> None:
         """``isinstance(x, y)``."""

@@ -83,6 +83,8 @@ STOPS = "stops:"
 # The flag of a socket that a node of a zone has once it is paired with the other one, and the method that does it.
 WHEN_PAIRED = "when-paired"
 PAIRS = "pair_with_output"
+# How the flag of a class of nodes begins that says what ``type`` is of all such nodes.
+NODE_TYPE = "node-type:"
 # How a flag begins that says in which of a node's modes a socket is shown, where its modes cannot say it.
 SHOWN_WHEN = "shown-when:"
 # The flag of a property, not called ``name``, by whose value collections find such an item.

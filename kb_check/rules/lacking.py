@@ -44,7 +44,8 @@ def lacking_finding(
     message = f"{lacking.message} {new_value(script, row, lacking.instead)}".rstrip()
     if addon := _registering(script, row, lacking):
         severity = "note"
-        message += f" The add-on `{addon}`, which is enabled here and cannot be looked into, may register it."
+        told = f"The add-on `{addon}`, which is enabled or asked for here and cannot be looked into,"
+        message += f" {told} may register it."
     return Finding(
         rule, severity, script.name_span(row.node), message, lacking.symbol, lacking.instead,
         renaming(script, row, lacking), absent_paths(row),
@@ -59,8 +60,11 @@ def _brought(script: Script, row: Resolution) -> str:
 
 
 def _registering(script: Script, row: Resolution, lacking: Lacking) -> str:
-    """The add-on that may register a name: no version has had it, and it is no misspelling; empty for none."""
-    if lacking.removed or lacking.replacement:
+    """The add-on that may register a name: it is no misspelling, and no version has had it, or it is an operator that
+    went without successor, as those of add-ons that became extensions; empty for none.
+    """
+    is_operator = all(owner.startswith(OPERATORS.rstrip(".")) for owner in row.missing)
+    if lacking.replacement or (lacking.removed and (lacking.instead or not is_operator)):
         return ""
     if row.kind == "value" and row.missing == (_ENGINES,):
         with_engines = script.package.brought_addons & _WITH_ENGINES

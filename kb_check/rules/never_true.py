@@ -8,6 +8,8 @@ if context.mode == "WEIGHT_PAINT":  # reported: the mode is called PAINT_WEIGHT
     ...
 if context.mode == "PAINT_WEIGHT":
     ...
+if node.type == "ShaderNodeEmission":  # reported: its type is "EMISSION", and this its bl_idname
+    ...
 if context.mode == "EDIT_GPENCIL":  # reported in 5.1: RNA lists it, and no object comes into such a mode
     ...
 ```
@@ -26,7 +28,10 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.api_names import NODE
+from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import item_of
+from kb_build.symbols.records import NODE_TYPE
 from kb_check.findings import Finding, Fix
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
@@ -41,6 +46,7 @@ if TYPE_CHECKING:
 
 def _check(script: Script) -> Iterator[Finding]:
     yield from _never_reached(script)
+    yield from _class_as_type(script)
     left_over: dict[str, list[Finding]] = {}
     for row in script.missing("compared"):
         if row.value:
@@ -98,6 +104,31 @@ def _never_reached(script: Script) -> Iterator[Finding]:
             f"it.{told}",
             f"{symbol.path}:{row.value}", tuple(f"{symbol.path}:{name}" for name in meant),
             Fix(f"Write {meant[0]}", (edit,)) if edit else None,
+        )  # fmt: skip
+
+
+def _class_as_type(script: Script) -> Iterator[Finding]:
+    """The ``type`` of a node, compared with the name of a class of nodes, which ``bl_idname`` is."""
+    for node in script.all(ast.Compare):
+        match node:
+            case ast.Compare(
+                left=ast.Attribute(value=held, attr="type") as left,
+                comparators=[ast.Constant(value=str(text))],
+            ):
+                pass
+            case _:
+                continue
+        symbol = script.api.symbols.symbol(f"{T}{text}") if text.isidentifier() else None
+        kind = "".join(symbol.flagged(NODE_TYPE)) if symbol else ""
+        cls = script.class_of(held) if kind else ""
+        if not cls or not script.api.descends(cls, NODE):
+            continue
+        edit = script.renamed(left, "bl_idname")
+        yield Finding(
+            RULE.id, RULE.severity, script.span(node.comparators[0]),
+            f"The `type` of a node never is the name of a class: of `{text}` it is {kind!r}, and `bl_idname` is "
+            f"{text!r}. The comparison never matches it.",
+            f"{NODE}.type", (f"{NODE}.bl_idname",), Fix("Write bl_idname", (edit,)) if edit else None,
         )  # fmt: skip
 
 

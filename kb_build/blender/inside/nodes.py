@@ -419,7 +419,7 @@ def write_all(write, structs, observer, former):
         observer.look(identifier, node, place=f" in a {node.id_data.bl_idname}" if others else "")
         for other in others:
             observer.ask(other, f"{identifier} in a {other.id_data.bl_idname}", "")
-        write("node", path=owner, trees=list(nodes))
+        write("node", path=owner, trees=list(nodes), type=node.type)
         write_node(write, owner, [node, *others], former.get(identifier, {}), alone if end else None)
         remove((*nodes.values(), end))
     write_former_classes(write, trees, [name for name in former if name not in structs])

@@ -50,6 +50,10 @@ def _severities(checker: Checker, code: str) -> list[str]:
         'addon_utils.enable(module_name="stranger")',
         'for name in ("rigify", "stranger"):\n    addon_utils.enable(name)',
         'bpy.ops.extensions.package_install(repo_index=0, pkg_id="stranger")',
+        'print("stranger" in bpy.context.preferences.addons)',
+        'print("stranger" not in bpy.context.preferences.addons.keys())',
+        'stranger = bpy.context.preferences.addons.get("stranger")',
+        'is_on, is_loaded = addon_utils.check("stranger")',
     ],
 )
 def test_what_a_foreign_addon_may_register_is_no_error(rule_checker: Checker, enabling: str) -> None:
@@ -106,3 +110,13 @@ def test_an_engine_may_be_one_of_an_addon_that_is_enabled(
 ) -> None:
     code = f"import addon_utils\nimport bpy\n{enabling}\nbpy.context.scene.render.engine = {engine!r}\n"
     assert _severities(rule_checker, code) == [severity]
+
+
+def test_operators_of_what_became_an_extension_are_a_note_where_it_is_asked_for(
+    rule_checker: Checker,
+) -> None:
+    use = 'bpy.ops.import_scene.x3d(filepath="a.x3d")\n'
+    asked = 'if "io_scene_x3d" in bpy.context.preferences.addons:\n    '
+    assert _severities(rule_checker, f"import bpy\n{use}") == ["error"]
+    assert _severities(rule_checker, f"import bpy\n{asked}{use}") == ["note"]
+    assert _severities(rule_checker, f"import bpy\n{asked}bpy.ops.object.lamp_add()\n") == ["error"]

@@ -145,3 +145,62 @@ def test_what_is_assigned_to_the_module_of_types_is_there(rule_checker: Checker,
     refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, _KEPT), 1) if error]
     assert refused == [2, 5]
     assert [one.span.line for one in rule_checker.check("\n".join(_KEPT))] == [5]
+
+
+_AREAS = """
+import bpy
+for area in bpy.context.screen.areas:
+    if area.type == 'VIEW_3D':
+        area.spaces.active.cursor_location = (0, 0, 0)
+        area.spaces.active.region_3d.view_perspective = 'CAMERA'
+        area.spaces.active.image
+    elif area.type in {'IMAGE_EDITOR', 'NODE_EDITOR'}:
+        area.spaces.active.image
+    area.spaces.active.image
+    if area.type != 'NODE_EDITOR':
+        continue
+    area.spaces.active.tree_typ
+"""
+
+
+def test_the_type_of_an_area_tells_its_active_space(rule_checker: Checker) -> None:
+    found = {one.span.line: one.message for one in rule_checker.check(_AREAS)}
+    assert list(found) == [5, 7, 13]
+    assert [
+        cls in found[line] for line, cls in ((5, "SpaceView3D"), (7, "SpaceView3D"), (13, "SpaceNodeEditor"))
+    ]
+
+
+_NODES = """\
+import bpy
+material = bpy.data.materials.new("material")
+nodes = material.node_tree.nodes
+ramp = nodes.new("ShaderNodeValToRGB")
+shader = next(node for node in nodes if node.type == 'BSDF_PRINCIPLED')
+shader.inputs["Specular"].default_value = 0.5
+shader.inputs["Roughness"].default_value = 0.5
+[node.inputs["Specular"] for node in nodes if node.type == 'BSDF_PRINCIPLED']
+[node for node in nodes if node.type == 'BSDF_PRINCIPLED'][0].inputs["Emission"]
+[node.color_ramp for node in nodes if node.type == 'VALTORGB']
+[node.inputs["Surface"] for node in nodes if node.type == 'OUTPUT_MATERIAL']
+"""
+
+
+def test_the_type_of_a_node_tells_its_class(rule_checker: Checker, tmp_path: Path) -> None:
+    lines: list[str] = [*_NODES.splitlines()]
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
+    assert [one.span.line for one in rule_checker.check(_NODES)] == refused == [6, 8, 9]
+
+
+def test_the_name_of_a_class_is_no_type_of_a_node(rule_checker: Checker) -> None:
+    code = """
+import bpy
+for node in bpy.context.object.active_material.node_tree.nodes:
+    if node.type == 'ShaderNodeEmission':
+        print(node.name)
+    if node.bl_idname == 'ShaderNodeEmission' or node.type == 'EMISSION':
+        print(node.name)
+"""
+    (found,) = rule_checker.check(code)
+    assert (found.rule, found.span.line) == ("never-true", 4)
+    assert "'EMISSION'" in found.message

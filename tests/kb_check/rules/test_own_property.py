@@ -294,3 +294,24 @@ def test_a_property_takes_the_place_of_an_inherited_one(check: Check, tmp_path: 
     found = check("wrong-type", _CLASSES + start + "\n".join(lines))
     first = (_CLASSES + start).count("\n") + 1
     assert [lines[finding.span.line - first] for finding in found] == refused == lines[1:3]
+
+
+def test_a_button_for_a_custom_property_of_an_own_group_is_no_finding(check: Check) -> None:
+    panel = """
+class VIEW3D_PT_parts(bpy.types.Panel):
+    bl_label = "Parts"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Parts"
+    def draw(self, context):
+        self.layout.prop(s, '["extra"]')
+        self.layout.prop(s, "extra")
+"""
+    (found,) = check("own-property", _CLASSES + panel)
+    assert "`extra`" in found.message
+
+
+def test_what_is_given_to_an_own_group_doubts_nothing_else(rule_checker: Checker) -> None:
+    code = f"{_CLASSES}bpy.context.object.foo = 3\ns.unknown = 2\nbpy.ops.mesh.primitive_cube_add(radius=1)\n"
+    found = [(one.rule, one.span.line - code.count("\n")) for one in rule_checker.check(code)]
+    assert found == [("unknown-attribute", -2), ("own-property", -1), ("unknown-keyword", 0)]

@@ -359,6 +359,24 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
             "ob.constraints['TrackTo']\nKeyError: 'bpy_prop_collection[key]: key \"TrackTo\" not found'",
             "A constraint of type 'TRACK_TO' is called \"Track To\"",
         ),
+        ("AttributeError: 'set' object has no attribute 'location'", "Operators return a set, {'FINISHED'}"),
+        (
+            "TypeError: write() argument 2 must be set, not list",
+            "`bpy.data.libraries.write(path, {obj, material})`",
+        ),
+        (
+            "ValueError: faces.new(...): face already exists",
+            "`face = bm.faces.get(verts) or bm.faces.new(verts)`",
+        ),
+        ("ValueError: edges.new(): this edge exists", "`edge = bm.edges.get(verts) or bm.edges.new(verts)`"),
+        (
+            "RuntimeError: Error: VertexGroup.add(): cannot be called while object is in edit mode",
+            "`layer = bm.verts.layers.deform.verify()`",
+        ),
+        (
+            "RuntimeError: Error: No Rigid Body World to add Rigid Body Constraint to",
+            "`bpy.ops.rigidbody.world_add()` makes the world of the scene",
+        ),
         (
             "key \"permissions\" invalid: permissions must be a table of strings, not a <class 'list'>",
             '`[permissions]`, below it `network = "Loads maps from the net"`.',

@@ -8,6 +8,22 @@ from kb_serve.recognise.messages.nameless.message import NamelessMessage
 _O = "bpy.ops.object."
 MESHES = (
     NamelessMessage(
+        ("faces.new(...): face already exists",),
+        ("bmesh.types.BMFaceSeq.new", "bmesh.types.BMFaceSeq.get"),
+        "One set of vertices has one face, in whatever order: `face = bm.faces.get(verts) or bm.faces.new(verts)`.",
+    ),
+    NamelessMessage(
+        ("edges.new(): this edge exists",),
+        ("bmesh.types.BMEdgeSeq.new", "bmesh.types.BMEdgeSeq.get"),
+        "Two vertices have one edge: `edge = bm.edges.get(verts) or bm.edges.new(verts)`.",
+    ),
+    NamelessMessage(
+        ("VertexGroup.", "(): cannot be called while object is in edit mode"),
+        (f"{T}VertexGroup.add", "bpy.ops.object.mode_set"),
+        "Leave Edit Mode first: `bpy.ops.object.mode_set(mode='OBJECT')`. In it a BMesh has the weights: "
+        "`layer = bm.verts.layers.deform.verify()`, then for each vertex `vert[layer][group.index] = 1.0`.",
+    ),
+    NamelessMessage(
         ("invalid key, must be a BMLayerItem",),
         ("bmesh.types.BMLayerCollection.verify", "bmesh.types.BMLayerCollection.active"),
         "The layer is None: `.active` and `.get(name)` give none where there is none. `bm.loops.layers.uv.verify()` "

@@ -9,6 +9,12 @@ _ANNOTATION = "ID type 'GREASEPENCIL' is not valid for an object"
 
 OBJECTS = (
     NamelessMessage(
+        ("No Rigid Body World to ",),
+        ("bpy.ops.rigidbody.world_add", f"{T}Scene.rigidbody_world"),
+        "`bpy.ops.rigidbody.world_add()` makes the world of the scene; `bpy.ops.rigidbody.object_add()` makes one "
+        "where none is.",
+    ),
+    NamelessMessage(
         ("Expected an evaluated object",),
         (f"{T}ID.evaluated_get", f"{T}Object.evaluated_geometry"),
         "Ask the evaluated object: `obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).evaluated_geometry()`.",

@@ -16,7 +16,27 @@ PLAIN_FUNCTION = (
     "that can be called raises `TypeError: notify expects a function`. Wrap those: "
     "`notify=lambda *args: self.changed(*args)`."
 )
+_OF_OPERATORS = (
+    "Operators return a set, {'FINISHED'}, and not what they make. That is the active object then: "
+    "`bpy.ops.mesh.primitive_cube_add()`, and in the next line `cube = bpy.context.object`."
+)
 PYTHON = (
+    NamelessMessage(
+        ("'set' object has no attribute '",),
+        (f"{T}Context.object", f"{T}Context.active_object"),
+        _OF_OPERATORS,
+    ),
+    NamelessMessage(
+        ("'set' object is not subscriptable",),
+        (f"{T}Context.object", f"{T}Context.active_object"),
+        _OF_OPERATORS,
+    ),
+    NamelessMessage(
+        ("write() argument 2 must be set, not ",),
+        (f"{T}BlendDataLibraries.write",),
+        "The data-blocks are given as a set: `bpy.data.libraries.write(path, {obj, material})`, or `set(objects)` of a "
+        "list.",
+    ),
     NamelessMessage(
         ("__init__() takes 1 positional argument but ",),
         (f"{T}Operator", f"{T}Panel"),
