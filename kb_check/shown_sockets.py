@@ -18,7 +18,7 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import usual_default
 from kb_build.symbols.records import SHOWN_WHEN
 from kb_check.node_settings import setting_of
-from kb_check.socket_modes import showing
+from kb_check.socket_modes import showing, ways_of_showing
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -72,16 +72,50 @@ def hidden_by_settings(script: Script, sockets: list[Symbol], node: ast.Subscrip
     alike = [
         other for other in script.api.sockets(cls, side) if key in {*other.socket_names, other.identifier}
     ]
-    known = _known(script, owner, cls, {name for socket in alike for name in showing(socket)}, node)
+    known = _known(script, owner, cls, _deciding(alike), node)
     hiding = {name: known[name] for socket in alike for name in _hiding(socket, known)}
     if not alike or not all(_is_hidden(socket, known) for socket in alike):
         return ""
-    others = {name for socket in script.api.sockets(cls, side) for name in showing(socket)}
-    known |= _known(script, owner, cls, others, node)
+    known |= _known(script, owner, cls, _deciding(script.api.sockets(cls, side)), node)
     shown = [other for other in script.api.sockets(cls, side) if not _is_hidden(other, known)]
     names = dict.fromkeys(repr(socket.label) for socket in shown if not socket.flagged(SHOWN_WHEN))
     instead = f": {', '.join(names)}" if names else ""
     return f"A `{cls}` shows no socket {key!r} while {_said(hiding)}, and finds only what it shows{instead}."
+
+
+def index_beyond(script: Script, node: ast.Subscript) -> str:
+    """What is wrong with an index of a node's sockets, where its settings leave fewer; empty if nothing surely is."""
+    match node:
+        case ast.Subscript(
+            value=ast.Attribute(value=ast.Name() as owner, attr="inputs" | "outputs" as side),
+            slice=ast.Constant(value=int(index)),
+        ):
+            cls = script.class_of(owner)
+        case _:
+            return ""
+    sockets = [*script.api.sockets(cls, side)] if cls else []
+    sometimes = [socket for socket in sockets if any(ways_of_showing(socket))]
+    if not sometimes or index < 0 or not all(_is_there_while_shown(socket) for socket in sometimes):
+        return ""
+    known = _known(script, owner, cls, _deciding(sometimes), node)
+    there = [socket for socket in sockets if not _is_hidden(socket, known)]
+    if index < len(there) or index >= len(sockets):  # or no such node has so many
+        return ""
+    names = ", ".join(repr(socket.label) for socket in there)
+    return f"A `{cls}` has no `{side}[{index}]` while {_said(known)}: its {side} are {names}."
+
+
+def _is_there_while_shown(socket: Symbol) -> bool:
+    """Whether a node has a socket only where it shows it: then its name always gives it."""
+    return f'{socket.side}["{socket.label}"]' in socket.subscripts or (
+        f'{socket.side}["{socket.identifier}"]' in socket.subscripts
+    )
+
+
+def _deciding(sockets: Iterable[Symbol]) -> set[str]:
+    """The settings that show sockets."""
+    modes = (mode for socket in sockets for way in ways_of_showing(socket) for mode in way)
+    return {mode.partition("=")[0] for mode in modes}
 
 
 def _known(
@@ -89,7 +123,18 @@ def _known(
 ) -> dict[str, str]:
     """Those settings of a node that are surely known before a place, with their values."""
     settings = {name: setting_of(script, owner, f"{cls}.{name}", before) for name in names}
-    return {name: value for name, value in settings.items() if value is not None}
+    return {
+        name: value
+        for name, value in settings.items()
+        if value is not None and not _is_of_some_trees(script, f"{cls}.{name}", value)
+    }
+
+
+def _is_of_some_trees(script: Script, setting: str, value: str) -> bool:
+    """Whether only some trees have a value of a setting: what it shows with others besides was not tried."""
+    symbol = script.api.symbols.symbol(setting)
+    items = symbol.enum_items if symbol else ()
+    return any(item.identifier == value and item.where and item.where.places for item in items)
 
 
 def _said(settings: Mapping[str, str]) -> str:
@@ -108,9 +153,18 @@ def _is_hidden(socket: Symbol, settings: Mapping[str, str]) -> bool:
 
 
 def _hiding(socket: Symbol, settings: Mapping[str, str]) -> list[str]:
-    """The names of those of some settings that hide a socket."""
-    modes = (mode.partition("=") for mode in socket.modes)
-    return [name for name, _, values in modes if name in settings and settings[name] not in values.split("|")]
+    """The names of those of some settings that hide a socket, in all the ways in which it may be shown."""
+    hiding: list[str] = []
+    for modes in ways_of_showing(socket):
+        against = [
+            name
+            for name, _, values in (mode.partition("=") for mode in modes)
+            if name in settings and settings[name] not in values.split("|")
+        ]
+        if not against:
+            return []
+        hiding += against
+    return hiding
 
 
 def _class_of(script: Script, socket: Symbol, settings: Mapping[str, str]) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import ID
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.lines import shown_when
+from kb_build.symbols.records import SHOWN_WHEN
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -27,6 +28,13 @@ def deciding(script: Script, sockets: list[Symbol]) -> set[str]:
 def showing(socket: Symbol) -> set[str]:
     """The properties with whose values a socket is shown."""
     return {mode.partition("=")[0] for mode in socket.modes}
+
+
+def ways_of_showing(socket: Symbol) -> list[tuple[str, ...]]:
+    """The sets of modes of its node with each of which a socket is shown: one that is empty where it always is."""
+    if socket.modes or not (told := socket.flagged(SHOWN_WHEN)):
+        return [socket.modes]
+    return [tuple(way.split(" and ")) for way in told[0].split(", or ")]
 
 
 def is_shown(socket: Symbol, settings: Mapping[str, str]) -> bool:

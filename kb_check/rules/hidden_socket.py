@@ -37,8 +37,9 @@ from kb_check.hidden_links import hidden_link
 from kb_check.made_here import is_new, knows_all, named_words
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
-from kb_check.shown_sockets import hidden_by_settings
+from kb_check.shown_sockets import hidden_by_settings, index_beyond
 from kb_check.socket_modes import deciding, is_by_others, is_internal
+from kb_check.tried import is_tried
 from kb_check.zone_pairing import unpaired
 
 if TYPE_CHECKING:
@@ -53,6 +54,7 @@ def _check(script: Script) -> Iterator[Finding]:
     yield from _never_shown(script)
     if not knows_all(script):
         return
+    yield from _beyond(script)
     for row in script.resolutions("item"):
         node = row.node
         certain = bool(row.symbols) and row.sure and not row.guarded and not row.missing
@@ -71,6 +73,14 @@ def _check(script: Script) -> Iterator[Finding]:
             yield Finding(RULE.id, "error", script.span(node), message, sockets[0].path)
         elif len(sockets) == 1 and (message := hidden_link(script, sockets[0], node, owner)):
             yield Finding(RULE.id, "warning", script.span(node), message, sockets[0].path)
+
+
+def _beyond(script: Script) -> Iterator[Finding]:
+    """Indices of sockets that nodes do not have as the script has set them."""
+    for node in script.all(ast.Subscript):
+        if (message := index_beyond(script, node)) and not is_tried(script, node):
+            path = f"{script.class_of(node.value.value)}" if isinstance(node.value, ast.Attribute) else ""
+            yield Finding(RULE.id, "error", script.span(node), message, path)
 
 
 def _never_shown(script: Script) -> Iterator[Finding]:

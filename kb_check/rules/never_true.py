@@ -19,7 +19,7 @@ A value that went and that nothing took the place of is a note, once for all its
 over from another Blender, and does no harm.
 
 Not reported: an empty text, since Blender gives one where a file holds a value that this version does not know; an old
-value beside the one that took its place (``ob.type in {"GPENCIL", "GREASEPENCIL"}``).
+value beside the one that took its place (``ob.type in {"GPENCIL", "GREASEPENCIL"}``, or the same with ``or``).
 """
 
 from __future__ import annotations
@@ -140,8 +140,20 @@ def _never_had(symbol: Symbol) -> list[EnumItem]:
 
 @once_per_script
 def _beside(script: Script) -> dict[ast.AST, frozenset[str]]:
-    """Of each text in a container that something is looked up in: all texts of the container."""
+    """Of each text that something is compared with: all texts of the container that it is in, or of the comparisons of
+    the same thing beside it: ``engine == "A" or engine == "B"``.
+    """
     found: dict[ast.AST, frozenset[str]] = {}
+    for either in script.all(ast.BoolOp):
+        asked: dict[str, list[ast.Constant]] = {}
+        for one in either.values if isinstance(either.op, ast.Or) else ():
+            match one:
+                case ast.Compare(left=left, ops=[ast.Eq()], comparators=[ast.Constant(value=str()) as text]):
+                    asked.setdefault(ast.unparse(left), []).append(text)
+                case _:
+                    pass
+        for texts in asked.values():
+            found.update(dict.fromkeys(texts, frozenset(str(text.value) for text in texts)))
     for node in script.all(ast.Compare):
         for container in node.comparators:
             if isinstance(container, (ast.Tuple, ast.List, ast.Set)):

@@ -75,8 +75,17 @@ def asked_of(found: Iterable[AskedValue], told: Iterable[str] = ()) -> AskedOf:
     values: dict[str, set[str]] = {}
     for value in found:
         if value.text != value.argument:
-            values.setdefault(value.argument, set()).add(value.text.removeprefix(f"{value.argument}="))
+            values.setdefault(value.argument, set()).add(_value(value).strip("{}"))
     return AskedOf(frozenset(told), {name: frozenset(each) for name, each in values.items()})
+
+
+def _value(asked: AskedValue) -> str:
+    """The value without the argument that takes it, as Python source."""
+    return asked.text.removeprefix(f"{asked.argument}=")
+
+
+def _as_set(asked: AskedValue) -> str:
+    return f"{asked.argument}={{{_value(asked)}}}"
 
 
 class _Told:
@@ -87,10 +96,17 @@ class _Told:
         self._left = left
 
     def arguments(self, symbol: Symbol) -> Iterator[AskedValue]:
+        alone: set[str] = set()  # values that one argument takes alone
         for parameter in symbol.parameters:
             if parameter.name.startswith(_OF_DIALOGS):
                 continue
             values = [*self.values(parameter.enum_items, parameter.name)]
+            if isinstance(parameter.default, list):  # an argument that takes a set: not one value said twice
+                values = [
+                    value._replace(text=_as_set(value)) for value in values if _value(value) not in alone
+                ]
+            else:
+                alone |= {_value(value) for value in values}
             unsaid = _UNSAID if len(symbol.parameters) > _VERY_MANY else frozenset[str]()
             names = (parameter.name, parameter.label)
             yield from values or self._asked(parameter.name, parameter.name, *names, unsaid=unsaid)

@@ -62,6 +62,7 @@ def test_modes_that_want_more_than_an_object_are_no_finding(check: Check, tmp_pa
     [
         "bpy.context.mode in {'EDIT_GPENCIL', 'EDIT_GREASE_PENCIL'}",
         "bpy.app.version < (4, 3) and bpy.context.mode == 'EDIT_GPENCIL'",
+        "bpy.context.mode == 'EDIT_GPENCIL' or bpy.context.mode == 'EDIT_GREASE_PENCIL'",
         "bpy.context.mode == 'EDIT_MESH'",
     ],
 )

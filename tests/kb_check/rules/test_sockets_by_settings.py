@@ -1,4 +1,4 @@
-"""Sockets that a node's settings hide are found where Blender refuses their names, and nowhere else.
+"""Sockets that a node's settings hide are found where Blender refuses their names or indices, and nowhere else.
 
 `make test` takes every fourth node.
 """
@@ -43,7 +43,7 @@ def in_state(tree, name, state):
 def is_given(sockets, key):
     try:
         sockets[key]
-    except KeyError:
+    except (KeyError, IndexError):
         return False
     return True
 
@@ -59,12 +59,12 @@ def rows(tree, name):
     for state in states:
         if node := in_state(tree, name, state):
             for side in ("inputs", "outputs"):
-                for socket in getattr(node, side):
-                    keys.update({(side, socket.name): None, (side, socket.identifier): None})
+                for place, socket in enumerate(getattr(node, side)):
+                    keys.update({(side, key): None for key in (place, socket.name, socket.identifier)})
             tree.nodes.remove(node)
     for state in states:
         if node := in_state(tree, name, state):
-            yield state, [(side, key, is_given(getattr(node, side), key)) for side, key in keys if key]
+            yield state, [(side, key, is_given(getattr(node, side), key)) for side, key in keys if key != ""]
             tree.nodes.remove(node)
 
 found = []
@@ -83,7 +83,7 @@ open(sys.argv[-1], "w").write(json.dumps(found))
 
 
 def test_what_settings_hide_is_found_and_what_they_show_is_not(rule_checker: Checker, tmp_path: Path) -> None:
-    nodes: list[tuple[str, str, list[tuple[list[tuple[str, str]], list[tuple[str, str, bool]]]]]]
+    nodes: list[tuple[str, str, list[tuple[list[tuple[str, str]], list[tuple[str, str | int, bool]]]]]]
     nodes = told_by_blender(_ASK, tmp_path, seconds=240)
     false: list[str] = []
     refused = found = 0
@@ -106,7 +106,7 @@ def test_what_settings_hide_is_found_and_what_they_show_is_not(rule_checker: Che
         found += sum(not is_given and line in told for line, is_given in given.items())
     assert false == []
     assert refused > 2_500
-    assert found >= 0.95 * refused
+    assert found >= 0.99 * refused
 
 
 _NODE = """
