@@ -86,6 +86,16 @@ _STEPPED = (
     "Rigid and soft bodies are simulated from one frame to the next: `for frame in range(scene.frame_start, 51): "
     "scene.frame_set(frame)`. A jump to frame 50 leaves them where they were, and cloth somewhat elsewhere."
 )
+_HELD = (
+    "A body that is `kinematic` stands where it is, or follows its keyframes. To let it go at frame 30: "
+    '`body.kinematic = True`, `body.keyframe_insert("kinematic", frame=29)`, then `body.kinematic = False`, '
+    '`body.keyframe_insert("kinematic", frame=30)`.'
+)
+_CACHED = (
+    "A simulation ends with its point cache, at frame 250 unless that is told otherwise, whatever the scene's "
+    "`frame_end` is: `scene.rigidbody_world.point_cache.frame_end = 500`, for cloth and soft bodies that of the "
+    "modifier, `modifier.point_cache.frame_end`."
+)
 _IN_ZONES = (
     "Simulations of geometry nodes are no point caches: `bpy.ops.object.simulation_nodes_cache_bake(selected=True)` "
     "bakes those of the selected objects."
@@ -247,6 +257,8 @@ _RATED = (
 )
 _FACES = "The lists hold the faces themselves (`BMFace`), not their indices."
 
+# By one of these a question asks why something ends, and not how it is read.
+_ENDING = _stems("250 end ends freeze freezes stop stops")
 ADVICE: tuple[Advice, ...] = (
     Advice(
         _STAYING,
@@ -311,7 +323,20 @@ ADVICE: tuple[Advice, ...] = (
             _stems("frame frames frame_set"),
             _stems("after at get jump not only position read result skip step through without"),
         ),
-        unless=_stems("strip split sequencer"),
+        unless=_stems("strip split sequencer") | _ENDING | _stems("active begin kinematic start"),
+    ),
+    Advice(
+        _HELD,
+        _of("RigidBodyObject.kinematic"),
+        asked=_stems("active begin hold kinematic release start starts until"),
+    ),
+    Advice(
+        _CACHED,
+        wherever=(
+            _stems("cloth physics rigid simulate simulation soft"),
+            _stems("cache frame frames"),
+            _ENDING,
+        ),
     ),
     Advice(
         _STEPPED,

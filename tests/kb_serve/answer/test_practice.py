@@ -647,6 +647,35 @@ def test_a_simulation_is_stepped_through(reader: BaseReader) -> None:
     assert ended[1] < 4
 
 
+def test_a_body_is_let_go_and_its_cache_ends(reader: BaseReader) -> None:
+    started = said(reader, f"{TYPES}RigidBodyObject.kinematic", "make a rigid body start moving at frame 30")
+    assert '`body.keyframe_insert("kinematic", frame=30)`' in started
+    assert "one frame to the next" not in started
+    stopped = said(
+        reader, f"{TYPES}RigidBodyWorld.point_cache", "why does my rigid body simulation stop at frame 250"
+    )
+    assert "`scene.rigidbody_world.point_cache.frame_end = 500`" in stopped
+    assert "one frame to the next" not in stopped
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.mesh.primitive_cube_add(location=(0, 0, 10))
+    obj, scene = bpy.context.object, bpy.context.scene
+    bpy.ops.rigidbody.object_add()
+    body = obj.rigid_body
+    body.kinematic = True
+    body.keyframe_insert("kinematic", frame=29)
+    body.kinematic = False
+    body.keyframe_insert("kinematic", frame=30)
+    scene.frame_end = 400
+    for end in (250, 400):
+        scene.rigidbody_world.point_cache.frame_end = end
+        heights: list[float] = []
+        for frame in range(1, 261):
+            scene.frame_set(frame)
+            heights.append(obj.matrix_world.translation.z)
+        assert heights[28] == 10.0 > heights[31]
+        assert (heights[250] == heights[259]) == (end == 250)
+
+
 def test_what_a_simulation_does_is_read_from_the_evaluated_object(reader: BaseReader) -> None:
     question = "world space vertex positions after modifiers"
     assert "`mesh = evaluated.to_mesh()`" in said(reader, f"{TYPES}Object.matrix_world", question)
