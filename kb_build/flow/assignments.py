@@ -30,6 +30,7 @@ from kb_build.symbols.api_names import STRUCT
 
 _TYPES = Module("bpy.types")
 _GROUP = "idprop.types.IDPropertyGroup"
+_OWN_GROUP = "bpy.types.PropertyGroup"
 _CHOOSING = frozenset(
     {"active", "scene", "view_layer", "workspace"}
 )  # which decide what the active object is
@@ -168,7 +169,8 @@ class Assignments(Guards, Annotations):
             self.here.scope.state.active = None
         text = chain_text(target)
         if isinstance(owner, LocalInstance):
-            self._store_on_instance(owner, target.attr, kind)
+            if isinstance(target.value, ast.Name) or not self._is_group(owner):
+                self._store_on_instance(owner, target.attr, kind)
         elif isinstance(owner, LocalClass):
             self.classes[owner.number].bind(target.attr, kind)
         elif owner == _TYPES:
@@ -220,6 +222,10 @@ class Assignments(Guards, Annotations):
             if any(self.api.descends(one.cls, base) for one in members(kind) for base in bases
                    if isinstance(one, Instance)):  # fmt: skip
                 del chains[text]
+
+    def _is_group(self, owner: LocalInstance) -> bool:
+        """Whether it is a property group, which is another instance each time that it is read from its owner."""
+        return any(self.api.descends(base, _OWN_GROUP) for base in self.api_bases(owner.number)[0])
 
     def _store_on_instance(self, owner: LocalInstance, name: str, kind: Type) -> None:
         if self.is_declared_in(owner.number, name):

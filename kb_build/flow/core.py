@@ -12,6 +12,7 @@ from kb_build.flow.place import Place
 from kb_build.flow.source_files import SourceFile
 from kb_build.flow.types import (
     UNKNOWN,
+    Builtin,
     ClassObject,
     LocalClass,
     LocalFunction,
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 
 DEEPEST_RUN = 60  # a function that is called further inside is read later
 DEEPEST = 160  # expressions and calls within each other
+# What is noted of an attribute that nothing had at first, and that was read again when something had given it.
+_TOLD_LATER = Builtin("told later")
 _MOST_BASES = 40
 _IN_ONE_STEP = 64  # names that are gone through in about the time in which an expression is read
 Reader = FunctionDefinition | SourceFile
@@ -317,7 +320,9 @@ class Core:
 
     def note(self, number: int, name: str | Given, kind: Type | None) -> None:
         """Remembers what was taken from another definition (see :data:`types.Readings`)."""
-        self.reader.readings.setdefault((number, name), kind)
+        first = self.reader.readings.setdefault((number, name), kind)
+        if first is None and kind is not None:
+            self.reader.readings[number, name] = _TOLD_LATER
 
     def _find_attribute(self, number: int, name: str) -> tuple[Type, int] | None:
         for kind in self.ancestors(number):

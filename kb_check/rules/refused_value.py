@@ -212,13 +212,13 @@ def _value_of_kind(kinds: Symbol, label: str, what: list[str]) -> str:
 def _refused_by_setting(
     script: Script, statement: ast.Assign, target: ast.Attribute, setting: _Setting, item: EnumItem
 ) -> Iterator[Finding]:
-    name, path = setting.symbol.name, setting.symbol.path
+    name = setting.symbol.name
     if before := set_before(script, statement, target.value, setting.symbol):
         if isinstance(before, ast.Constant) and setting.refuses(before.value):
-            yield _finding(script, statement.value, item, path, f"`{name}` is {before.value!r} here")
+            yield _finding(script, statement.value, item, setting.of, f"`{name}` is {before.value!r} here")
     elif told := _as_it_is_new(script, statement, target, setting):
         why, severity = told
-        found = replace(_finding(script, statement.value, item, path, why), severity=severity)
+        found = replace(_finding(script, statement.value, item, setting.of, why), severity=severity)
         yield _set_first(script, statement, target, setting, found)
 
 
@@ -253,7 +253,7 @@ def _set_first(
     if edit is None:
         return found
     fix = Fix(f"Set {name} first", (edit,), sure=True)
-    return replace(found, symbol=setting.of, instead=(setting.symbol.path,), fix=fix)
+    return replace(found, instead=(setting.symbol.path,), fix=fix)
 
 
 def _told_unset(script: Script, name: str, statement: ast.stmt) -> str | None:

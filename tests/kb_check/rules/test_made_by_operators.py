@@ -22,11 +22,11 @@ cube = bpy.context.object
 REFUSED = {
     "a text's filling": (
         "bpy.ops.object.text_add()\ntxt = bpy.context.object\ntxt.data.fill_mode = 'FULL'",
-        ["bpy.types.Curve.dimensions"],
+        ["bpy.types.Curve.fill_mode"],
     ),
     "a text's filling, read at once": (
         "bpy.ops.object.text_add()\nbpy.context.object.data.fill_mode = 'FULL'",
-        ["bpy.types.Curve.dimensions"],
+        ["bpy.types.Curve.fill_mode"],
     ),
     "one of two new curves": (
         """
@@ -36,7 +36,7 @@ REFUSED = {
         second = bpy.data.curves.new("b", 'CURVE')
         second.fill_mode = 'FULL'
         """,
-        ["bpy.types.Curve.dimensions"],
+        ["bpy.types.Curve.fill_mode"],
     ),
     "what its data lacks": (
         "bpy.ops.object.text_add()\ntxt = bpy.context.active_object\ntxt.data.bogus",

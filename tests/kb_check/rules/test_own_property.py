@@ -312,6 +312,6 @@ class VIEW3D_PT_parts(bpy.types.Panel):
 
 
 def test_what_is_given_to_an_own_group_doubts_nothing_else(rule_checker: Checker) -> None:
-    code = f"{_CLASSES}bpy.context.object.foo = 3\ns.unknown = 2\nbpy.ops.mesh.primitive_cube_add(radius=1)\n"
+    code = f"{_CLASSES}bpy.context.object.foo = 3\ns.one.unknown = 2\nbpy.ops.mesh.primitive_cube_add(radius=1)\n"
     found = [(one.rule, one.span.line - code.count("\n")) for one in rule_checker.check(code)]
     assert found == [("unknown-attribute", -2), ("own-property", -1), ("unknown-keyword", 0)]

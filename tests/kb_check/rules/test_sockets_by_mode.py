@@ -51,11 +51,11 @@ def scripts():
             if not isinstance(cls, type) or not issubclass(cls, bpy.types.Node):
                 continue
             try:
-                node = tree.nodes.new(name)
+                first = tree.nodes.new(name)
             except RuntimeError:
                 continue
-            for mode, choice in modes(node):
-                before = getattr(node, mode) if mode else None
+            for mode, choice in [*modes(first)]:
+                node = tree.nodes.new(name)  # a mode may change others, and leave them so
                 try:
                     if mode:
                         setattr(node, mode, choice)
@@ -64,9 +64,7 @@ def scripts():
                 made = f"tree = bpy.data.node_groups.new('tree', {kind!r})", f"node = tree.nodes.new({name!r})"
                 mode_set = f"node.{mode} = {choice!r}" if mode else ""
                 yield "\\n".join(["import bpy", *made, mode_set, *lines(node)])
-                if mode:
-                    setattr(node, mode, before)
-            tree.nodes.remove(node)
+            tree.nodes.clear()
 
 open(sys.argv[-1], "w").write(json.dumps(list(scripts())))
 """
