@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.core import ANY
 from kb_build.flow.source_files import module_name
+from kb_build.flow.trees import walk
 from kb_check.foreign_addons import brought_addons, foreign_addon
 from kb_check.package_roots import package_root
 
 if TYPE_CHECKING:
+    import ast
     from collections.abc import Iterable
 
     from kb_build.flow.analysis import Analysis
@@ -52,6 +54,15 @@ class Package:
             return True
         holders = self._classes.get(name, set()) | (self._classes.get(ANY, set()) if computed else set())
         return any(self._gives(owner, name, holders, computed=computed) for owner in owners)
+
+    def is_named_beside(self, name: str, tree: ast.Module) -> bool:
+        """Whether another file than that of the tree names something so."""
+        others = (one.tree for one in self._analyses if one.tree is not None and one.tree is not tree)
+        return any(
+            name in (getattr(node, "id", None), getattr(node, "attr", None), getattr(node, "name", None))
+            for other in others
+            for node in walk(other)
+        )
 
     @cached_property
     def foreign_addon(self) -> str:

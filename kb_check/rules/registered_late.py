@@ -1,4 +1,4 @@
-"""A class that is registered behind what needs it.
+"""A class that is registered behind what needs it, or not at all.
 
 Blender looks at what a class refers to when it registers the class: a group of properties in another group, the panel
 that a panel lies in. So it does with a property that is given to one of its own classes.
@@ -16,7 +16,10 @@ for cls in classes:
     bpy.utils.register_class(cls)
 ```
 
-Not reported: orders that are not written out in one place, and operators, which may be registered first.
+So is a group that another one refers to, and that the script does not register while it registers the other.
+
+Not reported: orders that are not written out in one place, operators, which may be registered first, and groups that
+the script names anywhere else than where they are referred to.
 """
 
 from __future__ import annotations
@@ -25,9 +28,10 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES as T
+from kb_check.computing import NAMESPACES, RUNNING, computing
 from kb_check.findings import Finding
 from kb_check.literals import times_bound, written
-from kb_check.made_here import callee_path
+from kb_check.made_here import callee_path, named_words
 from kb_check.own_classes import own_classes
 from kb_check.registrations import registrations, statements
 from kb_check.rule import Rule
@@ -43,7 +47,9 @@ if TYPE_CHECKING:
 
 _PROPS = "bpy.props."
 _AT_ONCE = frozenset({f"{T}PropertyGroup", f"{T}AddonPreferences"})
-_PANEL = f"{T}Panel"
+_GROUP, _PANEL = f"{T}PropertyGroup", f"{T}Panel"
+# Words of what finds the classes of a module.
+_FINDING = frozenset({"__subclasses__", "auto_load", "getmembers", "modules"})
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -53,6 +59,14 @@ def _check(script: Script) -> Iterator[Finding]:
         if name not in places:
             continue
         for node, needed in _needs(script, one, own):
+            if (
+                own[needed].path == _GROUP
+                and _is_left_out(script, own[needed])
+                and not is_tried(script, node)
+            ):
+                told = f"`{needed}` is never registered, and `{name}` needs it: Blender refuses to register that."
+                yield Finding(RULE.id, "error", script.span(node), told, own[needed].path)
+                continue
             if (
                 needed in places
                 and places[needed].is_behind(places[name].place)
@@ -65,6 +79,18 @@ def _check(script: Script) -> Iterator[Finding]:
         is_late = name in own and name in places and places[name].is_behind((body, number, 0))
         if node is not None and is_late and not is_tried(script, node):
             yield _finding(script, node, name, "this property, which needs it", own[name].path)
+
+
+def _is_left_out(script: Script, one: OwnClass) -> bool:
+    """Whether nothing in a script names a class but what refers to it, nor finds classes by themselves."""
+    named = {node for node in script.all(ast.Name) if node.id == one.node.name}
+    elements = {_element(script, call) for call in script.all(ast.Call)}
+    finds_classes = not _FINDING.isdisjoint(named_words(script)) or not computing(script).isdisjoint(
+        NAMESPACES | RUNNING
+    )
+    if one.node.decorator_list or finds_classes or not named <= elements:
+        return False
+    return not script.package.is_named_beside(one.node.name, script.tree)
 
 
 def _finding(script: Script, node: ast.expr, name: str, before: str, path: str) -> Finding:
@@ -112,4 +138,4 @@ def _places(script: Script) -> dict[str, Registration]:
     return {name: places[0] for name, places in found.items() if len(places) == 1 and times[name] == 1}
 
 
-RULE = Rule("registered-late", "error", "A class that is registered behind what needs it", _check)
+RULE = Rule("registered-late", "error", "A class that is registered behind what needs it, or never", _check)

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
 
     from conftest import Check
 
+    from kb_check.checker import Checker
+
 pytestmark = pytest.mark.blender
 
 _CLASSES: str = """\
@@ -37,6 +39,12 @@ _GIVEN = "bpy.types.Scene.settings = bpy.props.PointerProperty(type=Settings)"
 _ORDERS = {
     _LOOP.format("(Settings, Part)"): True,
     _LOOP.format("(Part, Settings)"): False,
+    _LOOP.format("(Settings,)"): True,
+    "bpy.utils.register_class(Settings)": True,
+    "bpy.utils.register_class(OBJECT_OT_grow)": False,
+    "for cls in bpy.types.PropertyGroup.__subclasses__()[-2:]:\n    bpy.utils.register_class(cls)\n"
+    "bpy.utils.unregister_class(Settings)\nbpy.utils.register_class(Settings)": False,
+    "if True:\n    bpy.utils.register_class(Part)\nbpy.utils.register_class(Settings)": False,
     _LOOP.format("(OBJECT_OT_grow, Part)"): False,
     _LOOP.format("(TEST_PT_below, TEST_PT_above)"): True,
     _LOOP.format("(TEST_PT_above, TEST_PT_below)"): False,
@@ -67,3 +75,14 @@ def test_what_blender_refuses_is_found(check: Check, tmp_path: Path, order: str,
 )
 def test_an_order_that_is_not_written_out_is_no_finding(check: Check, order: str) -> None:
     assert check("registered-late", f"{_CLASSES}{order}\n") == []
+
+
+def test_another_file_may_register_what_this_one_leaves_out(rule_checker: Checker) -> None:
+    code = f"{_CLASSES}bpy.utils.register_class(Settings)\n"
+    read = rule_checker.read(code)
+    for other, count in (
+        ("import bpy\n", 1),
+        ("import bpy\nfrom . import a\nbpy.utils.register_class(a.Part)\n", 0),
+    ):
+        package = rule_checker.package([read, rule_checker.read(other)])
+        assert len(rule_checker.check(read, package, ["registered-late"])) == count

@@ -17,6 +17,13 @@ if TYPE_CHECKING:
 
 _STATEMENTS = """\
 bpy.data.objects.new("o", None).select_set(True)
+bpy.ops.mesh.primitive_cube_add().location
+bpy.ops.mesh.primitive_cube_add()[0]
+bpy.data.libraries.write("x.blend", [ob])
+bm = bmesh.new(); three = [bm.verts.new((x, x * x, 0)) for x in range(3)]; bm.faces.new(three); bm.faces.new(three)
+bm = bmesh.new(); ends = [bm.verts.new((x, 0, 0)) for x in range(2)]; bm.edges.new(ends); bm.edges.new(ends)
+group = ob.vertex_groups.new(name="g"); bpy.ops.object.mode_set(mode="EDIT"); group.add([0], 1.0, "ADD")
+bpy.ops.object.empty_add(); bpy.ops.rigidbody.constraint_add(type="FIXED")
 bpy.context.view_layer.objects.active = bpy.data.objects.new("o", None)
 bpy.context.collection.objects.link(ob)
 scene.collection.children.link(bpy.data.collections["Collection"])
