@@ -25,6 +25,8 @@ from kb_check.literals import number, times_bound
 from kb_check.made_here import attributes, callee_path, once_bound
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from kb_build.flow.types import Type
     from kb_check.script import Script
 
@@ -109,15 +111,18 @@ def _times(script: Script, length: ast.expr, items: str) -> int | None:
 def _stays(script: Script, items: ast.expr, buffer: ast.expr) -> bool:
     """Whether the names in both stand for one thing each, and nothing makes the buffer longer."""
     names = {node.id for part in (items, buffer) for node in ast.walk(part) if isinstance(node, ast.Name)}
-    is_resized = any(
+    return not _is_changed(script, names, _RESIZING) and all(times_bound(script)[name] <= 1 for name in names)
+
+
+def _is_changed(script: Script, names: set[str], by: Iterable[str]) -> bool:
+    """Whether something of these names is called, or set, on one of the names, or added to it in place."""
+    return any(
         isinstance(node.value, ast.Name) and node.value.id in names
-        for name in _RESIZING
+        for name in by
         for node in attributes(script).get(name, ())
-    )
-    is_extended = any(
+    ) or any(
         isinstance(node.target, ast.Name) and node.target.id in names for node in script.all(ast.AugAssign)
     )
-    return not is_resized and not is_extended and all(times_bound(script)[name] <= 1 for name in names)
 
 
 class Rows(NamedTuple):
@@ -198,16 +203,7 @@ def _is_appended_to(script: Script, buffer: ast.expr) -> bool:
     made = once_bound(script, buffer)
     if not isinstance(buffer, ast.Name) or not isinstance(made, ast.List) or made.elts:
         return False
-    adding = {*_RESIZING, "copy", "sort"} - {"append"}
-    is_changed = any(
-        isinstance(node.value, ast.Name) and node.value.id == buffer.id
-        for name in adding
-        for node in attributes(script).get(name, ())
-    )
-    return not is_changed and not any(
-        isinstance(node.target, ast.Name) and node.target.id == buffer.id
-        for node in script.all(ast.AugAssign)
-    )
+    return not _is_changed(script, {buffer.id}, {*_RESIZING, "copy", "sort"} - {"append"})
 
 
 def wide_buffer(script: Script, call: ast.Call) -> ast.Call | None:

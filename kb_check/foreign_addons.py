@@ -7,7 +7,6 @@ Blender brings is known.
 from __future__ import annotations
 
 import ast
-import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import ADDONS
@@ -28,7 +27,6 @@ _ENABLING = {
     "enable": "module_name",  # addon_utils
 }
 _BY_PLACE = "addon_utils"
-_LISTED = re.compile(r"\.addons(\.keys\(\))?$")  # those that are enabled, in the preferences
 # The classes that add-ons give properties to; a file's own data and Blender's settings are hardly among them.
 _HOLDERS = tuple(
     f"{T}{name}"
@@ -91,13 +89,10 @@ def _enabled(analysis: Analysis) -> Iterator[str]:
     """The names of the add-ons that a script enables, or asks for, as far as they stand in it."""
     for node in walk(analysis.tree) if analysis.tree else ():
         match node:
-            case ast.Compare(left=asked, ops=[ast.In() | ast.NotIn()], comparators=[addons]) if (
-                _LISTED.search(ast.unparse(addons))
-            ):
-                yield from literal_texts(analysis.types.get(asked, UNKNOWN))
-            case ast.Call(func=ast.Attribute(value=owner, attr="get" | "check"), args=[asked, *_]) if (
-                _LISTED.search(owned := ast.unparse(owner)) or owned == _BY_PLACE
-            ):
+            case (
+                ast.Compare(left=asked, ops=[ast.In() | ast.NotIn()], comparators=[place])
+                | ast.Call(func=ast.Attribute(value=place, attr="get" | "check"), args=[asked, *_])
+            ) if _lists_addons(place):
                 yield from literal_texts(analysis.types.get(asked, UNKNOWN))
             case ast.Call(func=ast.Attribute(value=owner, attr=called)) if called in _ENABLING:
                 is_by_place = isinstance(owner, ast.Name) and owner.id == _BY_PLACE
@@ -108,3 +103,16 @@ def _enabled(analysis: Analysis) -> Iterator[str]:
                     yield from literal_texts(analysis.types.get(argument, UNKNOWN))
             case _:
                 pass
+
+
+def _lists_addons(node: ast.expr) -> bool:
+    """Whether an expression is what knows the add-ons: ``preferences.addons``, its keys, or the module for them."""
+    match node:
+        case ast.Name(id=name):
+            return name == _BY_PLACE
+        case ast.Attribute(attr="addons"):
+            return True
+        case ast.Call(func=ast.Attribute(value=ast.Attribute(attr="addons"), attr="keys")):
+            return True
+        case _:
+            return False

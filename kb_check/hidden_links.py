@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_check.made_here import callee_path, is_new, named_words
+from kb_check.made_here import LINKS_NEW, callee_path, is_new, named_words
 from kb_check.node_settings import setting_of
 from kb_check.script import once_per_script
 from kb_check.socket_modes import deciding, is_shown, showing
@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from kb_build.symbols.records import Symbol
     from kb_check.script import Script
-
-_LINKS_NEW = "bpy.types.NodeLinks.new"
 
 
 def hidden_link(script: Script, socket: Symbol, node: ast.Subscript, owner: ast.expr) -> str:
@@ -62,7 +60,7 @@ def _linked(script: Script) -> frozenset[ast.AST]:
     return frozenset(
         part
         for node in script.all(ast.Call)
-        if callee_path(script, node) == _LINKS_NEW
+        if callee_path(script, node) == LINKS_NEW
         for part in (*node.args, *(keyword.value for keyword in node.keywords))
         if isinstance(part, ast.Subscript)
         and isinstance(part.slice, ast.Constant)

@@ -9,6 +9,7 @@ import sys
 from bisect import bisect_right
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import READ_ACTIVE, made_by
 from kb_build.flow.trees import walk
 from kb_build.symbols.api_names import ID, OBJECT, OPERATORS
 from kb_build.symbols.flags import fillers
@@ -41,7 +42,7 @@ _HARMLESS_HELPERS = frozenset(
 _DOTS = 3  # of the path of an operator; that of a module has fewer
 # Operators that change nothing but the active object, which they leave as new as it is.
 _PLAIN = re.compile(r"bpy\.ops\.(mesh\.primitive_\w+_add|object\.(select_all|shade_\w+|delete)|wm\.read_\w+)")
-OBJECTS_NEW = "bpy.types.BlendDataObjects.new"
+OBJECTS_NEW, LINKS_NEW = "bpy.types.BlendDataObjects.new", "bpy.types.NodeLinks.new"
 
 
 @once_per_script
@@ -311,10 +312,31 @@ def bindings(script: Script) -> dict[str, list[ast.expr | None]]:
     return found
 
 
+def reads_active(script: Script, node: ast.expr | None) -> bool:
+    """Whether an expression surely is the active object, read from the context."""
+    row = script.analysis.resolutions.get(node) if node is not None else None
+    return row is not None and bool(row.symbols) and READ_ACTIVE.issuperset(row.symbols)
+
+
+def making_operator(script: Script, statement: ast.stmt) -> str:
+    """The operator that a statement calls, if it makes an object and leaves it the active one; empty for others."""
+    match statement:
+        case ast.Expr(value=ast.Call() as call) if made_by(path := callee_path(script, call)):
+            return path
+        case _:
+            return ""
+
+
 def once_bound(script: Script, node: ast.expr) -> ast.expr:
     """The one value that a name has, or else the expression itself."""
     values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else []
     return values[0] if len(values) == 1 and values[0] else node
+
+
+@once_per_script
+def assignments(script: Script) -> dict[ast.expr, ast.Assign]:
+    """Value → the statement that assigns it."""
+    return {node.value: node for node in script.all(ast.Assign)}
 
 
 @once_per_script

@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.flags import usual_default
 from kb_build.symbols.taken import NEVER
-from kb_check.made_here import attributes, bindings, is_new, keywords_and_texts, places, statement_of
+from kb_check.made_here import (
+    assignments,
+    attributes,
+    bindings,
+    is_new,
+    keywords_and_texts,
+    places,
+    statement_of,
+)
 from kb_check.script import once_for_each, once_per_script
 
 if TYPE_CHECKING:
@@ -22,7 +30,7 @@ def setting_of(script: Script, node: ast.Name, path: str, before: ast.expr) -> s
     made = bindings(script).get(node.id, [])
     if symbol is None or given is None or not _is_made_by_calls(script, node.id) or len(made) != 1:
         return None
-    making = _assignments(script).get(made[0])
+    making = assignments(script).get(made[0]) if made[0] else None
     statements = given.get(node.id, [])
     earlier = [statement for statement in statements if _end(statement) <= (before.lineno, before.col_offset)]
     # What comes later in the script may come earlier in time: in a loop, or where a function is called again.
@@ -95,9 +103,3 @@ def _is_made_by_calls(script: Script, name: str) -> bool:
 def _plain_stores(script: Script) -> dict[ast.expr, ast.Assign]:
     """Attribute → the statement that gives it a value, and nothing else."""
     return {node.targets[0]: node for node in script.all(ast.Assign) if len(node.targets) == 1}
-
-
-@once_per_script
-def _assignments(script: Script) -> dict[ast.expr | None, ast.Assign]:
-    """Value → the statement that assigns it."""
-    return {node.value: node for node in script.all(ast.Assign)}

@@ -15,11 +15,18 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import READ_ACTIVE, made_by
 from kb_build.flow.trees import walk
 from kb_build.symbols.api_names import OPERATORS
 from kb_check.calls import calls_by_node
-from kb_check.made_here import attributes, bindings, called_operators, callee_path, places
+from kb_check.made_here import (
+    attributes,
+    bindings,
+    called_operators,
+    callee_path,
+    making_operator,
+    places,
+    reads_active,
+)
 from kb_check.script import once_for_each
 
 if TYPE_CHECKING:
@@ -93,21 +100,15 @@ def made_just_before(script: Script, statement: ast.stmt, owner: ast.expr, setti
             place = body.last_before(place, setting.name, value)
         case _:
             pass
-    row = script.analysis.resolutions.get(holder) if holder is not None else None
-    if row is None or not row.symbols or not READ_ACTIVE.issuperset(row.symbols) or place < 0:
+    if place < 0 or not reads_active(script, holder):
         return ""
-    match statements[place]:
-        case ast.Expr(value=ast.Call() as call) if made_by(callee_path(script, call)):
-            return callee_path(script, call)
-        case _:
-            return ""
+    return making_operator(script, statements[place])
 
 
 def _given_to_maker(script: Script, call: ast.Call, owner: ast.expr, setting: Symbol) -> ast.expr | None:
     """What an operator that makes the active object is given for a setting of what belongs to that."""
-    row = script.analysis.resolutions.get(owner.value) if isinstance(owner, ast.Attribute) else None
     site = calls_by_node(script).get(call)
-    if row is None or not row.symbols or not READ_ACTIVE.issuperset(row.symbols):
+    if not isinstance(owner, ast.Attribute) or not reads_active(script, owner.value):
         return None
     if site is None or not site.callee.symbol.name.endswith("_add"):
         return None

@@ -110,7 +110,7 @@ class Analyzer(Statements, Functions, Calls):
             self.functions[number].cls if number is not None and not isinstance(node, ast.ClassDef) else None
         )
         name = getattr(node, "name", "")
-        return cls is not None and any(self.api.member(base, name) for base in self.api_bases(cls)[0])
+        return cls is not None and self.has_by_api(cls, name)
 
     def read_file(self, file: SourceFile) -> None:
         """See :class:`core.Core`."""

@@ -234,8 +234,6 @@ class Assignments(Guards, Annotations):
         held = found[0] if found else UNKNOWN
         if isinstance(held, LocalFunction) and self.functions[held.number].is_property:
             return  # its setter takes the value
-        if found is None:
-            bases, _ = self.api_bases(owner.number)
-            if any(self.api.member(base, name) for base in bases):
-                return
+        if found is None and self.has_by_api(owner.number, name):
+            return
         self.classes[found[1] if found else owner.number].bind(name, general(kind))

@@ -214,25 +214,18 @@ class Core:
         """The names that classes had not when a function or a module asked, and were given: of what follows from them
         nothing was known. None where it took what turned out to be something else.
         """
-        if self.is_current(reader):
-            return frozenset()
-        changed = {
-            key: kind
-            for key, kind in reader.readings.items()
-            if not isinstance(key[1], str) or self._known(key[0], key[1]) != kind
-        }
         names: set[str] = set()
-        for (number, name), kind in changed.items():
+        for (number, name), kind in reader.readings.items():
             if not isinstance(name, str):
                 if not self.returns_still(number, name, kind):
                     return None
-            elif not name or kind is not None or self._has_by_api(number, name):
-                return None
-            else:
+            elif self._known(number, name) != kind:
+                if not name or kind is not None or self.has_by_api(number, name):
+                    return None
                 names.add(name)
         return frozenset(names)
 
-    def _has_by_api(self, number: int, name: str) -> bool:
+    def has_by_api(self, number: int, name: str) -> bool:
         """Whether a class has a name by those of the API that it derives from."""
         return any(self.api.member(base, name) for base in self.api_bases(number)[0])
 

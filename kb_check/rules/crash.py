@@ -46,7 +46,15 @@ from kb_check.calls import CallSite, calls
 from kb_check.emptied import EMPTYING, is_emptied_before
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.given import Given, given_values
-from kb_check.made_here import bindings, called_operators, callee_path, is_named_before, knows_all, makers
+from kb_check.made_here import (
+    assignments,
+    bindings,
+    called_operators,
+    callee_path,
+    is_named_before,
+    knows_all,
+    makers,
+)
 from kb_check.opening import OPENING
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
@@ -106,18 +114,12 @@ def _given_none(script: Script, given: Given) -> Iterator[Finding]:
 
 def _by_index(script: Script, value: ast.expr, index: str) -> Fix | None:
     """``groups.active = None`` → ``groups.active_index = -1``."""
-    match _assignments(script).get(value) if index else None:
+    match assignments(script).get(value) if index else None:
         case ast.Assign(targets=[ast.Attribute(value=owner)]) as node:
             edit = Edit(script.span(node), f"{ast.unparse(owner)}.{index} = -1")
             return Fix(f"Write {index} = -1", (edit,), sure=True)
         case _:
             return None
-
-
-@once_per_script
-def _assignments(script: Script) -> dict[ast.expr, ast.Assign]:
-    """What is assigned → the statement."""
-    return {node.value: node for node in script.all(ast.Assign)}
 
 
 def _got(script: Script, node: ast.expr) -> ast.Call | None:

@@ -18,12 +18,19 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import READ_ACTIVE, made_by
 from kb_build.flow.trees import walk
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.edit_bones import bound_in, names_of_others
 from kb_check.findings import Finding
-from kb_check.made_here import alias, attributes, bodies, callee_path, computes_names
+from kb_check.made_here import (
+    alias,
+    attributes,
+    bodies,
+    callee_path,
+    computes_names,
+    making_operator,
+    reads_active,
+)
 from kb_check.mode_keeping import is_harmless
 from kb_check.rule import Rule
 from kb_check.tried import is_tried
@@ -56,18 +63,17 @@ def _check(script: Script) -> Iterator[Finding]:
         maker = ""
         for statement in body:
             if (link := _link(script, statement)) and not is_tried(script, link[0]):
-                call, *key = link
-                where = (key[0], key[1])
-                if by := linked.get(where):
+                call, name, collection = link
+                if by := linked.get((name, collection)):
                     yield Finding(
                         RULE.id, "error", script.span(call),
-                        f"`{where[0]}` is in `{where[1]}` already: {by} has linked it, and Blender refuses to do so "
+                        f"`{name}` is in `{collection}` already: {by} has linked it, and Blender refuses to do so "
                         "again. Leave this out.",
                         _LINK,
                     )  # fmt: skip
-                linked[where] = f"line {statement.lineno}"
+                linked[name, collection] = f"line {statement.lineno}"
                 continue
-            made, name = _operator(script, statement), _active(script, statement)
+            made, name = making_operator(script, statement), _active(script, statement)
             linked = {} if not made and _may_unlink(script, statement) else _kept(statement, linked)
             if maker and name and name not in names_of_others(script):
                 linked[name, _ACTIVE] = f"`{maker}`"
@@ -89,22 +95,13 @@ def _link(script: Script, statement: ast.stmt) -> tuple[ast.Call, str, str] | No
             return None
 
 
-def _operator(script: Script, statement: ast.stmt) -> str:
-    """The operator that a statement calls, if it makes an object and leaves it the active one; empty for others."""
-    match statement:
-        case ast.Expr(value=ast.Call() as call) if made_by(path := callee_path(script, call)):
-            return path
-        case _:
-            return ""
-
-
 def _active(script: Script, statement: ast.stmt) -> str:
     """The name that a statement gives the active object; empty for others."""
     match statement:
-        case ast.Assign(targets=[ast.Name(id=name)], value=ast.Attribute() as value):
-            row = script.analysis.resolutions.get(value)
-            is_active = row is not None and bool(row.symbols) and READ_ACTIVE.issuperset(row.symbols)
-            return name if is_active else ""
+        case ast.Assign(targets=[ast.Name(id=name)], value=ast.Attribute() as value) if reads_active(
+            script, value
+        ):
+            return name
         case _:
             return ""
 

@@ -20,7 +20,7 @@ from kb_build.flow.facts import made_by
 from kb_check.calls import calls_by_node
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.literals import times_bound
-from kb_check.made_here import once_bound
+from kb_check.made_here import assignments, once_bound
 from kb_check.raised import LACKS
 from kb_check.rule import Rule
 from kb_check.tried import is_tried
@@ -58,7 +58,7 @@ def _check(script: Script) -> Iterator[Finding]:
 
 def _active_then(script: Script, name: str, call: ast.Call) -> Fix | None:
     """The fix that gives a name the active object behind the operator that makes it."""
-    statement = next((one for one in script.all(ast.Assign) if one.value is call), None)
+    statement = assignments(script).get(call)
     if statement is None or not name or len(statement.targets) > 1:
         return None
     whole, value = script.span(statement), script.span(call)

@@ -86,9 +86,8 @@ def _lost_operators(script: Script) -> Iterator[Finding]:
 
 def _lacks(script: Script, use: Use, of: OwnProperties) -> bool:
     """Whether nothing gives an attribute, or a keyword, to what the script declares."""
-    if (
-        not of.is_whole or use.name.startswith(("__", "[")) or use.name in _EVERYWHERE
-    ):  # or by a custom property's key
+    is_by_key = use.name.startswith("[")  # of a custom property
+    if not of.is_whole or is_by_key or use.name.startswith("__") or use.name in _EVERYWHERE:
         return False
     if isinstance(use.node, ast.keyword):
         return True

@@ -39,7 +39,7 @@ from kb_build.symbols.records import PAIRS
 from kb_check.calls import CallSite, calls, calls_by_node
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.literals import number
-from kb_check.made_here import OBJECTS_NEW, bindings, callee_path, makers, once_bound
+from kb_check.made_here import LINKS_NEW, OBJECTS_NEW, bindings, callee_path, makers, once_bound
 from kb_check.node_trees import tree_of
 from kb_check.own_classes import own_classes, plain_classes
 from kb_check.registrations import registrations
@@ -64,7 +64,6 @@ _SIGNED = frozenset({"bmesh.types", "gpu.types", "idprop.types", "imbuf.types"})
 _REGISTERING = frozenset({"bpy.utils.register_class", "bpy.utils.unregister_class"})
 _NOT_AFTER = {"any": "a second time", "other": "after another", "same": "a second time"}
 _FIRST_OF_ZONE, _SECOND_OF_ZONE = "Input", "Output"
-_LINKS_NEW = f"{T}NodeLinks.new"
 _REMOVES_DATA = re.compile(r"bpy\.types\.BlendData\w+\.remove")
 
 
@@ -250,13 +249,13 @@ def _mispaired(script: Script, call: CallSite) -> Iterator[Finding]:
 
 def _of_one_side(script: Script, call: CallSite) -> Iterator[Finding]:
     """A link of two outputs, or of two inputs."""
-    if call.callee.symbol.path != _LINKS_NEW:
+    if call.callee.symbol.path != LINKS_NEW:
         return
     sides = [_side(script, node) for name in ("input", "output") if (node := call.argument(name)) is not None]
     if sides in (["inputs"] * 2, ["outputs"] * 2) and not is_tried(script, call.node):
         yield Finding(
             RULE.id, "error", script.span(call.node),
-            f"`{_LINKS_NEW}` links an output to an input, in any order, and is given two {sides[0]}.", _LINKS_NEW,
+            f"`{LINKS_NEW}` links an output to an input, in any order, and is given two {sides[0]}.", LINKS_NEW,
         )  # fmt: skip
 
 

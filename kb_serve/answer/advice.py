@@ -257,6 +257,7 @@ _RATED = (
 )
 _FACES = "The lists hold the faces themselves (`BMFace`), not their indices."
 
+_SIMULATED = _stems("cloth physics rigid simulate simulation soft")
 # By one of these a question asks why something ends, and not how it is read.
 _ENDING = _stems("250 end ends freeze freezes stop stops")
 ADVICE: tuple[Advice, ...] = (
@@ -319,7 +320,7 @@ ADVICE: tuple[Advice, ...] = (
     Advice(
         _STEPPED,
         wherever=(
-            _stems("cloth physics rigid simulate simulation soft"),
+            _SIMULATED,
             _stems("frame frames frame_set"),
             _stems("after at get jump not only position read result skip step through without"),
         ),
@@ -333,7 +334,7 @@ ADVICE: tuple[Advice, ...] = (
     Advice(
         _CACHED,
         wherever=(
-            _stems("cloth physics rigid simulate simulation soft"),
+            _SIMULATED,
             _stems("cache frame frames"),
             _ENDING,
         ),

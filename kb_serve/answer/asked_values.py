@@ -33,13 +33,21 @@ _NOT_WANTED = re.compile(
 class AskedValue(NamedTuple):
     """An argument, or the value of one or of the symbol itself, as Python source.
 
-    ``words``: how many words asked for it; ``in_order``: whether as it has them.
+    ``words``: how many words asked for it; ``in_order``: whether as it has them; ``in_set``: whether the argument takes
+    a set of values.
     """
 
-    text: str
     argument: str
+    value: str
     words: int
     in_order: bool
+    in_set: bool = False
+
+    @property
+    def text(self) -> str:
+        """``type='SUN'``; the value or the argument alone where there is no other."""
+        given = f"{{{self.value}}}" if self.in_set else self.value
+        return "=".join(filter(None, (self.argument, given)))
 
 
 def asked_words(question: str) -> tuple[str, ...]:
@@ -74,18 +82,9 @@ def asked_of(found: Iterable[AskedValue], told: Iterable[str] = ()) -> AskedOf:
     """The same from what was found in a question; ``told`` are the arguments that are told already."""
     values: dict[str, set[str]] = {}
     for value in found:
-        if value.text != value.argument:
-            values.setdefault(value.argument, set()).add(_value(value).strip("{}"))
+        if value.value:
+            values.setdefault(value.argument, set()).add(value.value)
     return AskedOf(frozenset(told), {name: frozenset(each) for name, each in values.items()})
-
-
-def _value(asked: AskedValue) -> str:
-    """The value without the argument that takes it, as Python source."""
-    return asked.text.removeprefix(f"{asked.argument}=")
-
-
-def _as_set(asked: AskedValue) -> str:
-    return f"{asked.argument}={{{_value(asked)}}}"
 
 
 class _Told:
@@ -102,29 +101,25 @@ class _Told:
                 continue
             values = [*self.values(parameter.enum_items, parameter.name)]
             if isinstance(parameter.default, list):  # an argument that takes a set: not one value said twice
-                values = [
-                    value._replace(text=_as_set(value)) for value in values if _value(value) not in alone
-                ]
+                values = [value._replace(in_set=True) for value in values if value.value not in alone]
             else:
-                alone |= {_value(value) for value in values}
+                alone |= {value.value for value in values}
             unsaid = _UNSAID if len(symbol.parameters) > _VERY_MANY else frozenset[str]()
             names = (parameter.name, parameter.label)
-            yield from values or self._asked(parameter.name, parameter.name, *names, unsaid=unsaid)
+            yield from values or self._asked(parameter.name, "", *names, unsaid=unsaid)
 
     def values(self, items: tuple[EnumItem, ...], argument: str) -> Iterator[AskedValue]:
         for item in items:
             if item.is_taken:
-                value = repr(item.identifier)
-                text = f"{argument}={value}" if argument else value
-                yield from self._asked(text, argument, item.name, item.identifier)
+                yield from self._asked(argument, repr(item.identifier), item.name, item.identifier)
 
     def _asked(
-        self, text: str, argument: str, *names: str, unsaid: frozenset[str] = frozenset()
+        self, argument: str, value: str, *names: str, unsaid: frozenset[str] = frozenset()
     ) -> Iterator[AskedValue]:
         """One, if all words of one of its names are asked for, but ``unsaid`` ones; one is not the symbol's."""
         for name in names:
             own = [word for word in terms(name) if word not in unsaid]
             places = [self._places.get(word, -1) for word in own]
             if places and min(places) >= 0 and not self._left.isdisjoint(own):
-                yield AskedValue(text, argument, len(places), places == sorted(places))
+                yield AskedValue(argument, value, len(places), places == sorted(places))
                 return

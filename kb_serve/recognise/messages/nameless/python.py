@@ -21,15 +21,9 @@ _OF_OPERATORS = (
     "`bpy.ops.mesh.primitive_cube_add()`, and in the next line `cube = bpy.context.object`."
 )
 PYTHON = (
-    NamelessMessage(
-        ("'set' object has no attribute '",),
-        (f"{T}Context.object", f"{T}Context.active_object"),
-        _OF_OPERATORS,
-    ),
-    NamelessMessage(
-        ("'set' object is not subscriptable",),
-        (f"{T}Context.object", f"{T}Context.active_object"),
-        _OF_OPERATORS,
+    *(
+        NamelessMessage((part,), (f"{T}Context.object", f"{T}Context.active_object"), _OF_OPERATORS)
+        for part in ("'set' object has no attribute '", "'set' object is not subscriptable")
     ),
     NamelessMessage(
         ("write() argument 2 must be set, not ",),
