@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.types import ClassObject, Function, NoneValue, Operator, members
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.records import RETURNS_NONE
+from kb_check.findings import Edit, Span
 from kb_check.literals import times_bound
 from kb_check.made_here import bindings
 from kb_check.script import once_for_each, once_per_script
@@ -178,6 +179,18 @@ def _once_held(script: Script) -> dict[str, ast.expr]:
     times = times_bound(script)
     held = {name: values[0] for name, values in bindings(script).items() if times[name] == 1}
     return {name: value for name, value in held.items() if value is not None and name not in asked}
+
+
+def giving(script: Script, call: ast.Call, argument: str) -> Edit | None:
+    """The edit that gives a call one argument more; None where a comma or a comment stands behind the last."""
+    whole = script.span(call)
+    given = [*call.args, *(keyword.value for keyword in call.keywords)]
+    if not given:
+        place = Span(whole.end_line, whole.end_column - 1, whole.end_line, whole.end_column - 1)
+        return Edit(place, argument)
+    last = script.span(given[-1])
+    behind = Span(last.end_line, last.end_column, whole.end_line, whole.end_column)
+    return Edit.behind(last, f", {argument}") if script.text(behind) == ")" else None
 
 
 @once_per_script

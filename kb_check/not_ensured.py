@@ -6,8 +6,8 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_check.calls import calls_by_node
-from kb_check.findings import Edit, Fix, Span
+from kb_check.calls import calls_by_node, giving
+from kb_check.findings import Fix
 from kb_check.made_here import (
     asked_names,
     bindings,
@@ -53,10 +53,5 @@ def _may_be_made(script: Script, name: str) -> bool:
 
 def ensuring(script: Script, call: CallSite) -> Fix | None:
     """``strip.channelbag(slot)`` → ``strip.channelbag(slot, ensure=True)``."""
-    whole = script.span(call.node)
-    given = [*call.node.args, *(keyword.value for keyword in call.node.keywords)]
-    last = script.span(given[-1]) if given else whole
-    behind = Span(last.end_line, last.end_column, whole.end_line, whole.end_column)
-    if script.text(behind) != ")":
-        return None
-    return Fix(f"Write {_ENSURE}=True", (Edit.behind(last, f", {_ENSURE}=True"),), sure=True)
+    edit = giving(script, call.node, f"{_ENSURE}=True")
+    return Fix(f"Write {_ENSURE}=True", (edit,), sure=True) if edit else None
