@@ -54,7 +54,7 @@ def read_inputs(
     groups = load(found.groups, faults, given)
     if typed is not None and not given:
         groups.append((LoadedFile(_STDIN_NAME, typed),))
-    left_out = [f"{path} was not checked: {configuration.file} excludes it." for path in found.excluded]
+    left_out = [f"{path} was left out: {configuration.file} excludes it." for path in found.excluded]
     return Inputs(groups, faults, left_out, typed)
 
 

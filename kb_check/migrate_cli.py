@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 import tempfile
 from contextlib import ExitStack
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
 
 _DECIDE, _FAILED, _INTERRUPTED = 1, 2, 130
 _REPORT = "MIGRATION.md"
-_STDIN, _STDIN_NAME = "-", "<stdin>"
+_STDIN = "-"
 
 
 @click.command()
@@ -117,12 +116,12 @@ def _migrate(paths: tuple[Path, ...], choices: dict[str, Any]) -> int:
 
 def _print(work: _Work, choices: dict[str, Any], *, is_filter: bool) -> None:
     """Prints the outcome; beside a diff, or code that another program reads, the words go to stderr."""
-    from kb_check.migrate.report import as_json, decision_lines, summary  # noqa: PLC0415 - not for --help
+    from kb_check.formats.json_format import dump  # noqa: PLC0415 - not for --help
+    from kb_check.migrate.report import as_json, decision_lines, summary  # noqa: PLC0415
 
     migration = work.migration
     if choices["as_json"]:
-        told = json.dumps(as_json(migration), indent=2)
-        click.echo(told.encode("utf-8", "replace").decode())
+        click.echo(dump(as_json(migration)))
         return
     beside = choices["diff"] or is_filter
     if is_filter and not choices["diff"]:
@@ -142,21 +141,19 @@ def _print(work: _Work, choices: dict[str, Any], *, is_filter: bool) -> None:
 
 
 def _groups(paths: Sequence[Path], faults: list[str]) -> list[Group]:
-    """The files, read; standard input is one."""
-    from kb_check.files import find_files  # noqa: PLC0415 - not for --help
-    from kb_check.project import LoadedFile  # noqa: PLC0415
-    from kb_check.run import load  # noqa: PLC0415
-    from kb_check.source import MOST_BYTES  # noqa: PLC0415
+    """The files that the project's configuration leaves in, read; standard input is one."""
+    from kb_check.configuration import read_configuration  # noqa: PLC0415 - not for --help
+    from kb_check.inputs import read_inputs  # noqa: PLC0415
 
     if _is_stdin(paths):
-        data = sys.stdin.buffer.read(MOST_BYTES + 1)
-        if len(data) <= MOST_BYTES:
-            return [(LoadedFile(_STDIN_NAME, data),)]
-        faults.append(f"Standard input is larger than {MOST_BYTES >> 20} MiB.")
-        return []
-    found = find_files(paths)
-    faults += found.faults
-    return load(found.groups, faults)
+        inputs = read_inputs((), read_configuration(Path()), reads_stdin=True)
+    else:
+        configuration = read_configuration(paths[0] if paths[0].is_dir() else paths[0].parent)
+        inputs = read_inputs(paths, configuration, gitignore=configuration.gitignore)
+    for warning in inputs.left_out:
+        click.echo(f"Warning: {warning}", err=True)
+    faults += inputs.faults
+    return inputs.groups
 
 
 def _migrate_groups(work: _Work, groups: Sequence[Group]) -> None:

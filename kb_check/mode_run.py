@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.trees import children, walk
 from kb_build.flow.types import Mapping
 from kb_check.calls import calls, calls_by_node
+from kb_check.context_managers import leaves_scene
 from kb_check.made_here import bindings, knows_all, named_words
 from kb_check.mode_keeping import (
     FUNCTIONS,
@@ -201,8 +202,7 @@ class _Run:
             after = self._block(node.body, replace(state, muted=True))
             return replace(_join(State(), after) or State(), muted=state.muted)
         after = self._block(node.body, state)
-        leaves = any(ast.unparse(item).startswith("open(") for item in items) and len(items) == 1
-        return after if leaves or after is None else State(muted=state.muted)
+        return after if leaves_scene(node) or after is None else State(muted=state.muted)
 
     def _try(self, node: ast.Try | ast.TryStar, state: State) -> State | None:
         muted = bool(node.handlers)

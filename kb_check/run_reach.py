@@ -17,6 +17,7 @@ from kb_build.flow.expressions import is_decided
 from kb_build.flow.trees import APART, called_name, children, run_with, walk
 from kb_build.flow.types import UNKNOWN, LocalClass, LocalFunction, literal
 from kb_check.computing import RUNNING, STORING
+from kb_check.context_managers import passes_errors
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -39,13 +40,6 @@ _BRINGING = RUNNING | STORING | frozenset(
     }
 )  # fmt: skip
 _PACKAGES = frozenset({"numpy", "__future__"})  # that Blender brings, and that leave its API alone
-# Context managers that let every error through.
-_PASSING_ERRORS = frozenset(
-    {
-        "open", "temp_override", "redirect_stdout", "redirect_stderr", "closing", "nullcontext", "catch_warnings",
-        "TemporaryDirectory", "NamedTemporaryFile",
-    }
-)  # fmt: skip
 _LEAVING = frozenset({"exit", "quit", "_exit", "quit_blender"})
 _LOOPS = (ast.For, ast.AsyncFor, ast.While)
 
@@ -106,8 +100,7 @@ class RunReach:
             case ast.For():
                 blocks = [node.body] if self._has_turns(node.iter) else []
             case ast.With():
-                managers = {called_name(item.context_expr) for item in node.items}
-                blocks = [node.body] if managers <= _PASSING_ERRORS else []
+                blocks = [node.body] if passes_errors(node) else []
             case ast.Try() | ast.TryStar():
                 blocks = [node.finalbody] if node.handlers else [node.body, node.finalbody]
             case ast.ClassDef():

@@ -7,6 +7,7 @@ import builtins
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import UNKNOWN, Builtin, Tuple, catches, members
+from kb_check.context_managers import passes_errors
 from kb_check.line_ranges import LineRanges
 from kb_check.made_here import callee_path
 from kb_check.script import once_for_each
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def is_tried(script: Script, node: ast.expr | ast.stmt, errors: tuple[str, ...] = ()) -> bool:
-    """Whether an error here may be caught: in a ``try``, or by a context manager that is none of Blender's.
+    """Whether an error here may be caught: in a ``try``, or by a context manager that may keep it.
 
     ``errors`` are the names of the classes that it may be of; of any where none is named.
     """
@@ -30,7 +31,7 @@ def _tried_lines(script: Script, errors: tuple[str, ...]) -> LineRanges:
         match node:
             case ast.Try() | ast.TryStar() if any(_may_catch(script, one, errors) for one in node.handlers):
                 found.append((node.lineno, node.body[-1].end_lineno or 0))
-            case ast.With() | ast.AsyncWith() if not all(_is_blenders(script, item) for item in node.items):
+            case ast.With() | ast.AsyncWith() if not (passes_errors(node) or _all_blenders(script, node)):
                 found.append((node.lineno, node.end_lineno or 0))
             case _:
                 pass
@@ -53,5 +54,8 @@ def _may_catch(script: Script, handler: ast.ExceptHandler, errors: tuple[str, ..
     return len(caught) < len(kinds) or catches(caught, errors)
 
 
-def _is_blenders(script: Script, item: ast.withitem) -> bool:
-    return isinstance(item.context_expr, ast.Call) and bool(callee_path(script, item.context_expr))
+def _all_blenders(script: Script, node: ast.With | ast.AsyncWith) -> bool:
+    return all(
+        isinstance(item.context_expr, ast.Call) and bool(callee_path(script, item.context_expr))
+        for item in node.items
+    )

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from kb_check.configuration import Configuration
+from kb_check.formats.json_format import span_as_json
+from kb_check.formats.text import place_of
 from kb_check.project import Project
 from kb_check.run import Run
 from kb_serve.locate import find_bases
@@ -22,16 +24,16 @@ if TYPE_CHECKING:
     from kb_check.cache import ResultCache
     from kb_check.findings import Finding, Severity
     from kb_check.project import Group
-    from kb_check.report import Report
+    from kb_check.report import FileReport, Report
 
 _NARROWEST = 6  # columns of a version in the table
 
 
 @dataclass(frozen=True, slots=True)
 class FoundIn:
-    """What is found in a file for some Blenders: the finding of the first of them."""
+    """What is found in a file for some Blenders: the report and the finding of the first of them."""
 
-    path: str
+    file: FileReport
     finding: Finding
     versions: tuple[str, ...]
 
@@ -76,16 +78,16 @@ class VersionsReport:
         return self._found("warning")
 
     def _found(self, severity: Severity) -> list[FoundIn]:
-        first: dict[tuple[Any, ...], tuple[str, Finding]] = {}
+        first: dict[tuple[Any, ...], tuple[FileReport, Finding]] = {}
         where: dict[tuple[Any, ...], list[str]] = {}
         for report in self.reports:
             for file, finding in report.findings:
                 if finding.severity == severity:
                     key = file.name, finding.span, finding.rule
-                    first.setdefault(key, (file.name, finding))
+                    first.setdefault(key, (file, finding))
                     where.setdefault(key, []).append(report.blender)
-        rows = [FoundIn(name, finding, tuple(where[key])) for key, (name, finding) in first.items()]
-        return sorted(rows, key=lambda row: (row.path, row.finding.span.line, row.finding.span.column))
+        rows = [FoundIn(file, finding, tuple(where[key])) for key, (file, finding) in first.items()]
+        return sorted(rows, key=lambda row: (row.file.name, row.finding.span.line, row.finding.span.column))
 
     def totals(self) -> dict[str, int]:
         """Version → number of errors in all files."""
@@ -119,7 +121,7 @@ class VersionsReport:
 
     def _first(self, version: str) -> str:
         row = next(row for row in self.breaks() if version in row.versions)
-        return f"{row.path}:{row.finding.span.line}"
+        return place_of(row.file, row.finding).rpartition(":")[0]
 
     # Ways to write it.
 
@@ -151,10 +153,8 @@ class VersionsReport:
             yield verdict
 
     def _line(self, row: FoundIn) -> str:
-        span = row.finding.span
         where = _ranges(row.versions, self.versions)
-        place = f"{row.path}:{span.line}:{span.column + 1}"
-        return f"{place}: in {where}: [{row.finding.rule}] {' '.join(row.message.split())}"
+        return f"{place_of(row.file, row.finding)}: in {where}: [{row.finding.rule}] {' '.join(row.message.split())}"
 
     def as_json(self) -> dict[str, Any]:
         """The same for programs. Lines and columns count from 1."""
@@ -200,9 +200,8 @@ def check_versions(  # noqa: PLR0913 - what is checked, and how
 
 def _as_json(row: FoundIn) -> dict[str, Any]:
     return {
-        "path": row.path,
-        "line": row.finding.span.line,
-        "column": row.finding.span.column + 1,
+        "path": row.file.name,
+        **span_as_json(row.file.source, row.finding.span),
         "rule": row.finding.rule,
         "symbol": row.finding.symbol,
         "instead": list(row.finding.instead),

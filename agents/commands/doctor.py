@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from agents.commands import options
+from simworlds.terminal import options
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,7 +10,7 @@ from typing import NoReturn
 
 import click
 
-from agents.commands import options
+from simworlds.terminal import options
 
 _HERE = click.Path(file_okay=False, resolve_path=True, path_type=Path)
 

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from agents.blender.tool_profiles import DEFAULT, PROFILES
-from agents.commands import options
 from agents.commands.sandbox_warning import warn
 from simworlds.releases import minor_of
+from simworlds.terminal import options
 from simworlds.terminal.finite_range import FiniteRange
 
 if TYPE_CHECKING:

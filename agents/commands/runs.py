@@ -15,6 +15,7 @@ from agents.roles.names import ROLES
 from simworlds.operating_system import SYSTEM
 from simworlds.own_command import own_command
 from simworlds.terminal.finite_range import FiniteRange
+from simworlds.terminal.options import EXECUTABLE, SANDBOX, VERSION, combine
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
@@ -45,21 +46,12 @@ class _RunFolder(click.Path):
         return super().convert(run_named(str(value)) or value, param, ctx)
 
 
-def _options(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
-    def add(command: Command) -> Command:
-        for option in reversed(options):
-            command = option(command)
-        return command
-
-    return add
-
-
-_limits = _options(
+_limits = combine(
     click.option("--max-cost", type=FiniteRange(0), metavar="USD", help="Stop before the run costs more."),
     click.option("--max-minutes", type=FiniteRange(0, min_open=True), help="Stop after this time."),
     click.option("--quiet", is_flag=True, help="Print only the outcome."),
 )
-_model = _options(
+_model = combine(
     click.option(
         "--provider",
         type=click.Choice(["anthropic", "openai"]),
@@ -89,26 +81,18 @@ _RENDER = (
         "--samples", type=click.IntRange(1), help="Samples of the rendering, instead of the plan's."
     ),
 )
-_blender = _options(
+_blender = combine(
     click.option("--run", "root", type=_FOLDER, help="Folder of the run.  [default: a new one]"),
-    click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's."),
-    click.option(
-        "--blender-exe",
-        type=_FILE,
-        envvar="BLENDER_EXE",
-        show_envvar=True,
-        help="The Blender to start, if not bpy.",
-    ),
+    VERSION,
+    EXECUTABLE,
     click.option("--read", type=_FOLDER, multiple=True, help="A folder that Blender may read, as of assets."),
-    click.option(
-        "--sandbox", type=click.Choice(["bubblewrap", "landlock", "none"]), help="What confines Blender."
-    ),
+    SANDBOX,
     *_RENDER,
 )
-_assets = _options(
+_assets = combine(
     click.option("--assets", type=_LIBRARY, help="Your asset library, which the plan may draw on."),
 )
-_ablations = _options(
+_ablations = combine(
     click.option("--no-verifier", is_flag=True, help="Leave the verifier out (ablation)."),
     click.option("--no-stages", is_flag=True, help="Build everything in one pass (ablation)."),
 )
@@ -194,7 +178,7 @@ def replay(run: Path, **given: Any) -> None:
 @click.command()
 @click.argument("run", type=_RunFolder())
 @_limits
-@_options(*_RENDER)
+@combine(*_RENDER)
 def resume(run: Path, **given: Any) -> None:
     """Resume a run that was stopped or killed. Nothing that was done or paid for is done again.
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from agents.commands import options
+from simworlds.terminal import options
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator

@@ -11,9 +11,11 @@ RunError
 
 from __future__ import annotations
 
+from simworlds.errors import UserError
 
-class RunError(Exception):
-    """Base of all of them. The message says what was wrong, and what to do."""
+
+class RunError(UserError):
+    """Base of all of them."""
 
 
 class NoRun(RunError):  # noqa: N818 - these read as the states they name

@@ -15,7 +15,7 @@ from agents.loop.algorithm import make
 from agents.loop.answer_source import LiveOptions, check_model, make_model
 from agents.loop.edit.edit_mode import edit
 from agents.loop.edit.inputs import check_inputs
-from agents.loop.errors import Aborted, NoRun, RunError, Stopping, Unusable
+from agents.loop.errors import Aborted, NoRun, Stopping, Unusable
 from agents.loop.events import RunBegan, RunEnded, SessionBegan
 from agents.loop.journal import NAME, Journal
 from agents.loop.leaving import LATEST, leave
@@ -24,6 +24,7 @@ from agents.loop.reducer import read_run_state
 from agents.loop.run import SCENE, Run
 from agents.loop.tool_client import ToolClient
 from agents.roles.names import ROLES
+from simworlds.errors import UserError
 from simworlds.folder_lock import locked
 from simworlds.installed import own_version
 from simworlds.llm.errors import ModelError, OverBudget
@@ -31,7 +32,7 @@ from simworlds.llm.spending import Spending
 from simworlds.operating_system import SYSTEM
 from simworlds.own_command import own_command
 from simworlds.sandbox.confined_command import best_sandbox
-from simworlds.sandbox.errors import BlenderError, Refusal
+from simworlds.sandbox.errors import Refusal
 from simworlds.sandbox.launch import find_blender
 
 if TYPE_CHECKING:
@@ -166,7 +167,7 @@ def _ended(run: Callable[[], Ended]) -> Ended:
         return Ended("aborted", str(aborted))
     except Unusable as error:
         return Ended("failed", str(error), again=False)
-    except (RunError, ModelError, BlenderError, OSError) as error:
+    except (UserError, OSError) as error:
         return Ended("failed", str(error))
 
 

@@ -4,46 +4,23 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from simworlds.terminal import options
 from simworlds.terminal.finite_range import FiniteRange
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from bench.audit.untrusted_blend import BlenderOptions
     from simworlds.llm.prices import Price
-
-    Command = TypeVar("Command", bound=Callable[..., Any])
 
 _PATH = click.Path(path_type=Path)
 MEMORY = FiniteRange(0.25, 4096)  # GiB: with less, Blender does not start
 
 
-def combine(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
-    """Several options as one decorator."""
-
-    def add(command: Command) -> Command:
-        for option in reversed(options):
-            command = option(command)
-        return command
-
-    return add
-
-
-with_blender_version = combine(
-    click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's."),
-    click.option(
-        "--blender-exe",
-        type=_PATH,
-        envvar="BLENDER_EXE",
-        show_envvar=True,
-        help="The Blender to use, if not bpy.",
-    ),
-)
-with_audit_options = combine(
+with_blender_version = options.combine(options.VERSION, options.EXECUTABLE)
+with_audit_options = options.combine(
     click.option(
         "--read",
         type=_PATH,

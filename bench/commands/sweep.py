@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bench.commands.shared_options import blender_options, combine, judge_cache, with_audit_options
+from bench.commands.shared_options import blender_options, judge_cache, price_of, with_audit_options
 from bench.commands.system_options import system_of, with_system_options
 from simworlds.counting import counted
 from simworlds.terminal.finite_range import FiniteRange
+from simworlds.terminal.options import combine
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Sequence
@@ -64,6 +65,11 @@ _scoring = combine(
     click.option("--judge-model", metavar="NAME", help="The judge's model.  [default: as of 'bench judge']"),
     click.option("--judge-url", metavar="URL", help="Another server that speaks the provider's API."),
     click.option("--judge-max-cost", type=FiniteRange(0), metavar="USD", help="For all scenes together."),
+    click.option(
+        "--judge-price",
+        metavar="IN/OUT",
+        help="Dollars per million tokens, for a judge's model without a list price.",
+    ),
     click.option("--judge-cache", type=_PATH, help="Folder of answers.  [default: in SimWorlds' own]"),
     with_audit_options,
 )
@@ -184,7 +190,7 @@ def _judge(given: dict[str, Any]) -> SweepJudge:
 
     cache = judge_cache(given["judge_cache"])
     who = (given["judge"], given["judge_model"], given["judge_url"], given["judge_max_cost"], cache)
-    return judge_of(JudgeOptions(*who))
+    return judge_of(JudgeOptions(*who, price_of(given["judge_price"])))
 
 
 def _executor(given: dict[str, Any]) -> Executor:
@@ -209,6 +215,8 @@ def _conclude(summaries: Sequence[SweepSummary], out: Path) -> None:
             click.echo(f"  {count} not scored: {reason(why)}")
         for why, count in sorted(one.why_not_judged.items(), key=lambda item: -item[1]):
             click.echo(f"  {count} not judged: {reason(why)}")
+        for why, count in sorted(one.why_stands.items(), key=lambda item: -item[1]):
+            click.echo(f"  {count} with an earlier judgement, which stays: {reason(why)}")
     faults = [fault for one in summaries for fault in one.faults]
     for scene, why in faults:
         click.echo(f"  {scene} could not be done: {reason(why)}", err=True)

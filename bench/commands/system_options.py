@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from bench.commands.shared_options import combine
+from simworlds.llm.providers import PROVIDERS
 from simworlds.terminal.finite_range import FiniteRange
+from simworlds.terminal.options import combine
 
 if TYPE_CHECKING:
     from bench.sweep.records import Ablation, SystemInfo
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 _ROLES = "planner, coder, reviewer, final_reviewer"
 _BOTH = "simworlds, replay:"
 # Options that the commands of a system take too: what results depend on, and what ends a session at a run.
-_SETTINGS = ("model", "samples", "render_minutes", "blender", "blender_exe")
+_SETTINGS = ("provider", "model", "samples", "render_minutes", "blender", "blender_exe")
 _LIMITS = ("max_cost", "max_minutes")
 
 
@@ -29,7 +30,17 @@ with_system_options = combine(
         help="Who makes the scenes: SimWorlds, the transcripts that ship with it, or the author of the files in DIR.",
     ),
     click.option("--name", help="What the results call it.  [default: simworlds, replay, DIR's name]"),
+    click.option(
+        "--provider",
+        type=click.Choice(PROVIDERS),
+        help=f"simworlds: whose API the model is asked by.  [default: {PROVIDERS[0]}]",
+    ),
     click.option("--model", metavar="NAME", help="simworlds: the model for all roles."),
+    click.option(
+        "--price",
+        metavar="IN/OUT",
+        help="simworlds: dollars per million tokens, of models that are in no list.",
+    ),
     click.option(
         "--role-model", multiple=True, metavar="ROLE=NAME", help=f"simworlds: another one for {_ROLES}."
     ),
@@ -52,7 +63,9 @@ def system_of(given: dict[str, Any]) -> SceneSystem:
         _refuse(
             given,
             "folder",
+            "provider",
             "model",
+            "price",
             "role_model",
             "max_cost",
             "max_minutes",
@@ -72,7 +85,17 @@ def system_of(given: dict[str, Any]) -> SceneSystem:
         *(("no-stages",) if given["no_stages"] else ()),
     )
     if kind == "replay":
-        _refuse(given, "replay", "model", "role_model", "max_cost", "no_verifier", "no_stages")
+        _refuse(
+            given,
+            "replay",
+            "provider",
+            "model",
+            "price",
+            "role_model",
+            "max_cost",
+            "no_verifier",
+            "no_stages",
+        )
         return ReplaySystem(
             _info("replay", given["name"] or "replay", (), _settings(given)), _options(given), _limits(given)
         )
@@ -117,6 +140,7 @@ def _settings(given: dict[str, Any]) -> dict[str, Any]:
 def _options(given: dict[str, Any]) -> tuple[str, ...]:
     """The same as words of a command, with what Blender may read."""
     options = [(name, given[name]) for name in _SETTINGS if given[name] is not None]
+    options += [("price", given["price"])] if given["price"] else []
     options += [("role_model", role_model) for role_model in given["role_model"]]
     options += [("read", folder.expanduser().resolve()) for folder in given["read"]]
     flags = [f"--{name.replace('_', '-')}" for name in ("no_verifier", "no_stages") if given[name]]

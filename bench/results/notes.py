@@ -1,4 +1,4 @@
-"""Warnings for the reader of a report: results of other code or other judges, results that could not be read."""
+"""What the reader of a report must know: who judged, results of other code, results that could not be read."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def notes(results: ResultSet) -> list[str]:
-    """The warnings, as sentences."""
+    """The notes, as sentences."""
     return [*results.faults, *_of_audits(results), *_of_judges(results)]
 
 
@@ -34,7 +34,9 @@ def _of_audits(results: ResultSet) -> Iterator[str]:
 def _of_judges(results: ResultSet) -> Iterator[str]:
     judgements = [judged for scene in _all(results) if (judged := scene.record.judged) and judged.why is None]
     judges = {f"{judged.provider}/{judged.model}, prompts {judged.prompt_version}" for judged in judgements}
-    if len(judges) > 1:
+    if len(judges) == 1:
+        yield f"VLM scores are those of {judges.pop()}; they compare only with others of the same judge."
+    elif judges:
         yield f"VLM scores come from several judges and cannot be compared: {'; '.join(sorted(judges))}."
 
 

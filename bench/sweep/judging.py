@@ -29,20 +29,33 @@ if TYPE_CHECKING:
 
     from bench.judge.verdicts import Judgement
     from bench.sweep.scene_task import SceneTask
+    from simworlds.llm.prices import Price
+
+_NO_JUDGE = "none"
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedScene:
+    """What came of judging one scene. ``stands``: why an earlier judgement stays, where there is no new one."""
+
+    task: SceneTask
+    record: SceneRecord
+    stands: str = ""
 
 
 @dataclass(frozen=True)
 class JudgeOptions:
     """The judge to use. ``provider``: "anthropic", "openai" or "none"; ``max_cost`` (US dollars): of the whole sweep.
 
-    ``cache``: the folder of kept answers.
+    ``cache``: the folder of kept answers; ``price``: of a model without a list price.
     """
 
-    provider: str = "none"
+    provider: str = _NO_JUDGE
     model: str | None = None
     base_url: str | None = None
     max_cost: float | None = None
     cache: Path | None = None
+    price: Price | None = None
 
 
 @dataclass(frozen=True)
@@ -61,11 +74,15 @@ class SweepJudge:
 
 def judge_of(options: JudgeOptions) -> SweepJudge:
     """Checks that the key and all packages are there; sends nothing."""
-    if options.provider == "none":
+    if options.provider == _NO_JUDGE:
         return SweepJudge(options, None, "no judge was requested (--judge none)")
     try:
         provider = provider_of(
-            options.provider, model=options.model, base_url=options.base_url, max_cost=options.max_cost
+            options.provider,
+            model=options.model,
+            base_url=options.base_url,
+            max_cost=options.max_cost,
+            price=options.price,
         )
         provider.ready()
     except (NotJudged, ValueError) as error:
@@ -73,15 +90,13 @@ def judge_of(options: JudgeOptions) -> SweepJudge:
     return SweepJudge(options, provider)
 
 
-def judge_all(
-    tasks: Sequence[SceneTask], who: SweepJudge, threads: int = 4
-) -> Iterator[tuple[SceneTask, SceneRecord]]:
+def judge_all(tasks: Sequence[SceneTask], who: SweepJudge, threads: int = 4) -> Iterator[JudgedScene]:
     """Judges the frames of each task's scene and writes its record; yields them in the order in which they end.
 
     A record of a scene that was not judged says why. Raises BadSceneRecord, OSError.
     """
     waiting: queue.SimpleQueue[SceneTask] = queue.SimpleQueue()
-    done: queue.SimpleQueue[tuple[SceneTask, SceneRecord | BaseException]] = queue.SimpleQueue()
+    done: queue.SimpleQueue[JudgedScene | BaseException] = queue.SimpleQueue()
     for task in tasks:
         waiting.put(task)
 
@@ -92,21 +107,21 @@ def judge_all(
             except queue.Empty:
                 return
             try:
-                done.put((task, judge_scene(task, who)))
+                done.put(judge_scene(task, who))
             except BaseException as error:
-                done.put((task, error))
+                done.put(error)
 
     # Daemons: an interrupt does not wait for answers. Those that have arrived are kept in the judge's cache.
     for _ in range(min(threads, len(tasks))):
         threading.Thread(target=work, name="judge", daemon=True).start()
     for _ in tasks:
-        task, outcome = done.get()
+        outcome = done.get()
         if isinstance(outcome, BaseException):
             raise outcome
-        yield task, outcome
+        yield outcome
 
 
-def judge_scene(task: SceneTask, who: SweepJudge) -> SceneRecord:
+def judge_scene(task: SceneTask, who: SweepJudge) -> JudgedScene:
     """Judges one scene's frames, if they are not judged yet. A judgement stays until there is a new one."""
     record = read_record(task.folder) or SceneRecord(scene=task.spec.id, system=task.system.info)
     paths = [task.path(file) for file in record.framed.frames] if record.framed is not None else []
@@ -119,15 +134,16 @@ def judge_scene(task: SceneTask, who: SweepJudge) -> SceneRecord:
     else:
         key = _key(task, who.provider, frames)
         if before is not None and before.key == key and before.why is None:
-            return record
+            return JudgedScene(task, record)
         judged = _judged(task, who.provider, paths, who.options.cache, key).model_copy(
             update={"frames": frames}
         )
     if judged.why and before is not None and before.frames == frames and (before.why in (None, judged.why)):
-        return record
+        is_asked = before.why is None and who.options.provider != _NO_JUDGE
+        return JudgedScene(task, record, judged.why if is_asked else "")
     record = record.model_copy(update={"judged": judged})
     write_record(task.folder, record)
-    return record
+    return JudgedScene(task, record)
 
 
 def _no_frames(record: SceneRecord) -> str:

@@ -42,7 +42,8 @@ class ScoringOptions:
 
 @dataclass(frozen=True)
 class SweepSummary:
-    """How many scenes were requested, scored and judged; why others were not, with counts.
+    """How many scenes were requested, scored and judged; why others were not, with counts. ``why_stands``: of those
+    of which an earlier judgement stays, since the judge that was asked gave none.
 
     ``faults``: (scene, why) of scenes that could not be run here; the next sweep tries them again.
     """
@@ -52,6 +53,7 @@ class SweepSummary:
     judged: int
     why_not_scored: dict[str, int]
     why_not_judged: dict[str, int]
+    why_stands: dict[str, int]
     faults: tuple[tuple[str, str], ...]
 
 
@@ -86,22 +88,28 @@ def sweep(tasks: Sequence[SceneTask], judge: SweepJudge, executor: Executor, vie
                 if done.record is None:
                     faults.append((done.task.spec.id, done.fault))
         framed = [task for task in tasks if "frames" in task.steps and (task.folder / NAME).is_file()]
-        for task, record in judge_all(framed, judge):
-            if record.judged is not None and record.judged.key:  # a judge was asked
-                view.judged(task, record)
-    return _summary(tasks, faults)
+        stands: list[str] = []
+        for scene in judge_all(framed, judge):
+            if scene.record.judged is not None and scene.record.judged.key:  # a judge was asked
+                view.judged(scene)
+            if scene.stands:
+                stands.append(scene.stands)
+    return _summary(tasks, faults, stands)
 
 
-def _summary(tasks: Sequence[SceneTask], faults: list[tuple[str, str]]) -> SweepSummary:
+def _summary(
+    tasks: Sequence[SceneTask], faults: list[tuple[str, str]], stands: Sequence[str]
+) -> SweepSummary:
     records = [record for task in tasks if (record := read_record(task.folder)) is not None]
     audits = [record.audited for record in records if record.audited is not None]
     judgements = [record.judged for record in records if record.judged is not None]
     return SweepSummary(
         len(tasks),
         sum(audit.why is None for audit in audits),
-        sum(judged.why is None for judged in judgements),
+        sum(judged.why is None for judged in judgements) - len(stands),
         dict(Counter(audit.why for audit in audits if audit.why is not None)),
         dict(Counter(judged.why for judged in judgements if judged.why is not None)),
+        dict(Counter(stands)),
         tuple(faults),
     )
 

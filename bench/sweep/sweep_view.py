@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from typing import TextIO
 
     from bench.sweep.executor import FinishedTask
-    from bench.sweep.records import SceneRecord
+    from bench.sweep.judging import JudgedScene
     from bench.sweep.scene_task import SceneTask
 
 _PER_SECOND = 4
@@ -45,9 +45,9 @@ class SweepView:
         self._count += 1
         self._write(f"[{self._count}/{self._total}] {format_done(done)}")
 
-    def judged(self, task: SceneTask, record: SceneRecord) -> None:
+    def judged(self, scene: JudgedScene) -> None:
         """Shows a scene whose frames were judged, or not."""
-        self._write(format_judgement(task, record))
+        self._write(format_judgement(scene))
 
     def __enter__(self) -> Self:
         return self
@@ -118,13 +118,16 @@ def format_done(done: FinishedTask) -> str:
     return f"{scene:<16} MPR {share(audited.mpr)}  SPR {share(audited.spr)}  {frames} frames{none}"
 
 
-def format_judgement(task: SceneTask, record: SceneRecord) -> str:
+def format_judgement(scene: JudgedScene) -> str:
     """Describes a judgement in one line."""
-    judged = record.judged
+    judged, name = scene.record.judged, f"{scene.task.spec.id:<16}"
     if judged is None or judged.why is not None:
         why = reason(judged.why if judged and judged.why else "no judgement")
-        return f"{task.spec.id:<16} not judged: {why}"
-    return f"{task.spec.id:<16} VLM {share(judged.score)}"
+        return f"{name} not judged: {why}"
+    if scene.stands:
+        by = f"{judged.provider}/{judged.model}"
+        return f"{name} not judged: {reason(scene.stands)}; VLM {share(judged.score)} of {by} stays"
+    return f"{name} VLM {share(judged.score)}"
 
 
 def share(value: float | None) -> str:

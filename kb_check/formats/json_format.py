@@ -40,7 +40,7 @@ def dump(document: dict[str, Any]) -> str:
 def _finding(file: FileReport, finding: Finding) -> dict[str, Any]:
     return {
         "path": file.name,
-        **_span(file.source, finding.span),
+        **span_as_json(file.source, finding.span),
         "rule": finding.rule,
         "severity": finding.severity,
         "message": finding.message,
@@ -54,11 +54,12 @@ def _fix(source: Source, fix: Fix) -> dict[str, Any]:
     return {
         "title": fix.title,
         "sure": fix.sure,
-        "edits": [{**_span(source, edit.span), "text": edit.text} for edit in fix.edits],
+        "edits": [{**span_as_json(source, edit.span), "text": edit.text} for edit in fix.edits],
     }
 
 
-def _span(source: Source, span: Span) -> dict[str, int]:
+def span_as_json(source: Source, span: Span) -> dict[str, int]:
+    """Where something stands, in the source's own cells and lines; an end is the first place behind."""
     cell, line = source.place(span.line)
     return {
         **({"cell": cell} if cell else {}),

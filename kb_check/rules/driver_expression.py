@@ -68,8 +68,8 @@ def _fault(script: Script, text: str, node: ast.expr) -> str:
         return f"{why}. It is one expression of Python."
     nodes = list(ast.walk(tree))
     names = {one.id for one in nodes if isinstance(one, ast.Name)}
-    if found := next((one.attr for one in nodes if _is_of_math(one)), ""):
-        return f"`math` is not known there, and its functions are without it: `{found}`."
+    if found := [one.attr for one in nodes if isinstance(one, ast.Attribute) and _is_math(one.value)]:
+        return f"`math` is not known there, and its functions are without it: `{found[0]}`."
     if "self" in names and "use_self" not in named_words(script):
         return "`self` is known only while `driver.use_self` is True."
     bound = {one.arg for one in nodes if isinstance(one, ast.arg)}
@@ -90,8 +90,8 @@ def _fault(script: Script, text: str, node: ast.expr) -> str:
     )
 
 
-def _is_of_math(node: ast.AST) -> bool:
-    return isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "math"
+def _is_math(node: ast.expr) -> bool:
+    return isinstance(node, ast.Name) and node.id == "math"
 
 
 def _variables(script: Script) -> frozenset[str] | None:

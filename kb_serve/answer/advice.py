@@ -244,9 +244,7 @@ _SIGNED = (
     "`Matrix.Diagonal((-1, 2, 3, 1))` gives (-1, -2, -3)."
 )
 _WINDOWED = "It crashes a Blender without a window (`--background`, or `import bpy` in another Python)."
-_RULED = (
-    f"In a script: {ADDS_BOID_RULE}. Without it nothing is added, and {'CANCELLED'} is all that is returned."
-)
+_RULED = f"In a script: {ADDS_BOID_RULE}. Without it nothing is added, and {{'CANCELLED'}} is all that is returned."
 _SMOOTHED = (
     "The Smooth by Angle modifier is a group of geometry nodes: `bpy.ops.object.shade_auto_smooth(angle=0.5)` adds it "
     "to the selected objects."

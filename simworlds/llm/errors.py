@@ -17,13 +17,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from simworlds.errors import UserError
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from simworlds.llm.messages import Turn, Usage
 
 
-class ModelError(Exception):
+class ModelError(UserError):
     """Base of the errors here. ``lost`` is the usage of attempts without a turn, as far as it is known."""
 
     lost: Usage | None = None

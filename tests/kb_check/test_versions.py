@@ -39,7 +39,7 @@ def test_a_base_tells_what_is_wrong_in_its_version(base: Path) -> None:
     (version,) = report.versions
     assert report.errors() == {"addon/old.py": {version: 1}, "addon/right.py": {version: 0}}
     (found,) = report.breaks()
-    assert (found.path, found.finding.span.line, found.versions) == ("addon/old.py", 2, (version,))
+    assert (found.file.name, found.finding.span.line, found.versions) == ("addon/old.py", 2, (version,))
     assert report.runs_in() == []
 
 

@@ -62,7 +62,7 @@ def _faults(actor: EditedActor, tags: Mapping[str, Any] | None) -> Iterator[Find
         yield _finding(
             actor,
             f"The collection {actor.name!r} has {found}; the edit plan says {told}.",
-            f"Build the mechanism that is planned, and tag the collection {told} (blender_tag).",
+            f"Build the mechanism that is planned, and tag the collection {told} (blender_group).",
         )
 
 

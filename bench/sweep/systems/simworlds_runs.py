@@ -6,7 +6,6 @@ paid for twice; outcome, files and cost are read from its journal.
 
 from __future__ import annotations
 
-import os
 import shutil
 from contextlib import suppress
 from dataclasses import dataclass
@@ -20,11 +19,14 @@ from agents.loop.journal import NAME, read_rows
 from bench.sweep.command import last_output, run_simworlds
 from bench.sweep.records import FINAL, Outcome, SystemInfo
 from bench.sweep.systems.system import SystemNotReady, SystemOutput
+from simworlds.llm.errors import ModelError
+from simworlds.llm.providers import PROVIDERS, connect
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from bench.scenes.spec import Spec
+    from simworlds.llm.providers import ProviderName
 
 # Scene → the transcript whose prompt asks for the same actors. That of the edit has no scene.
 TRANSCRIPTS = {
@@ -88,11 +90,13 @@ class SimWorldsSystem(_RunSystem):
 
     def ready(self) -> None:
         """Raises SystemNotReady without a key."""
-        if not any(os.environ.get(name) for name in KEYS):
+        provider = self.info.settings.get("provider", PROVIDERS[0])
+        try:
+            connect(cast("ProviderName", provider)).close()
+        except ModelError as error:
             raise SystemNotReady(
-                f"'simworlds make' asks a language model and needs a key: set {KEYS[0]}. Without one, try --system "
-                "replay."
-            )
+                f"'simworlds make' asks a language model: {error} What needs no key: --system replay."
+            ) from error
 
     def is_for(self, spec: Spec) -> bool:
         """Any scene."""

@@ -183,7 +183,7 @@ def test_what_is_excluded_is_told_and_not_called_good(command: Command, base: Pa
         for several in ([], ["--blender", versions]):
             done = command(name, *several)
             assert (done.code, done.out) == (0, "")
-            assert done.err == f"Warning: {name} was not checked: {place} excludes it.\n"
+            assert done.err == f"Warning: {name} was left out: {place} excludes it.\n"
 
 
 def test_a_path_that_is_not_there_is_good_in_no_version(command: Command, base: Path) -> None:
