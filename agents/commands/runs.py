@@ -47,7 +47,12 @@ class _RunFolder(click.Path):
 
 
 _limits = combine(
-    click.option("--max-cost", type=FiniteRange(0), metavar="USD", help="Stop before the run costs more."),
+    click.option(
+        "--max-cost",
+        type=FiniteRange(0),
+        metavar="USD",
+        help="Stop before the whole run costs more; holds until another is given.",
+    ),
     click.option("--max-minutes", type=FiniteRange(0, min_open=True), help="Stop after this time."),
     click.option("--quiet", is_flag=True, help="Print only the outcome."),
 )

@@ -9,11 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from agents.loop.errors import NoRun
+from agents.loop.events import MendWeighed, RoomTold, TimeTold, read_event
 from agents.loop.journal import NAME, read_rows
+from agents.roles.names import ROLES
 from simworlds.llm.attempts import Settings
+from simworlds.llm.errors import OverBudget
 from simworlds.llm.providers import connect
 from simworlds.llm.recorded import Recorded, Recording, read_turns
-from simworlds.llm.spending import Metered
+from simworlds.llm.spending import Metered, no_price
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -26,6 +29,7 @@ if TYPE_CHECKING:
     from simworlds.llm.spending import Spending
 
 _MODEL = ("model.asked", "model.answered")
+_OF_TIME = (RoomTold, TimeTold, MendWeighed)
 TRANSCRIPTS = Path(str(files("agents") / "transcripts"))
 
 
@@ -39,10 +43,17 @@ class LiveOptions:
     closing: ExitStack
 
 
-def check_model(options: Options) -> None:
-    """Raises ModelError if a live model is to answer, and could not be asked: a key or a package is missing."""
-    if options.origin == "live":
-        connect(options.provider, Settings(prices=options.prices)).close()
+def check_model(options: Options, max_cost: float | None) -> None:
+    """Raises ModelError if a live model is to answer, and could not be asked: a key or a package is missing, or the
+    price that a limit of cost needs.
+    """
+    if options.origin != "live":
+        return
+    connect(options.provider, Settings(prices=options.prices)).close()
+    if max_cost is not None:
+        for model in map(options.model_of, ROLES):
+            if options.prices.of(model) is None:
+                raise OverBudget(no_price(model, max_cost))
 
 
 def make_model(root: Path, options: Options, journal: Journal, live: LiveOptions) -> Model:
@@ -100,6 +111,17 @@ def _source(
             model = connect(options.provider, Settings(prices=options.prices), on_retry, pause=live.pause)
             live.closing.callback(model.close)
             return Metered(model, live.spending)
+
+
+def repeat_told(options: Options, journal: Journal) -> None:
+    """Notes what the roles of a replayed run were told of time, which a replay tells again: on any machine, and within
+    any limit. Raises NoRun.
+    """
+    if options.origin != "replay":
+        return
+    for event in map(read_event, read_rows(Path(options.source) / NAME)):
+        if isinstance(event, _OF_TIME):
+            journal.note(event)
 
 
 def transcripts() -> list[str]:

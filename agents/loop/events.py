@@ -117,7 +117,8 @@ class RunBegan(Event):
 
 
 class SessionBegan(Event):
-    """A process began to work on the run; from here on, films have this time and these samples, if any are given.
+    """A process began to work on the run; from here on, films have this time and these samples, and the run this limit
+    of cost (US dollars), if any are given.
 
     ``max_minutes``: the limit of this session.
     """
@@ -127,6 +128,7 @@ class SessionBegan(Event):
     render_minutes: Float | None = None
     render_samples: Int | None = None
     max_minutes: Float | None = None
+    max_cost: Float | None = None
 
 
 class SceneRestored(Event):

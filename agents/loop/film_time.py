@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from agents.loop.events import MendWeighed, PlanMade, RoomTold, SceneRendered
 from agents.loop.run_state import DEFAULT_RENDER_MINUTES
+from simworlds.counting import counted
 from simworlds.operating_system import SYSTEM
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ _MENDING_SECONDS = 180.0
 _WORTH = 0.5  # of the time that a film took, for which it is rendered anew
 _SAMPLES_A_CORE_SECOND = 0.15  # million, of a furnished room
 _ROOM = """\
-The film may take {minutes:g} minutes on the {cores} cores here; no GPU is counted on. In that time Cycles makes some \
+The film may take {minutes:g} minutes on the {cores} here; no GPU is counted on. In that time Cycles makes some \
 {millions:,.0f} million samples (frames × width × height × samples a pixel) of a simple scene, and half as many with \
 glass, volumes or many lights. What is planned beyond that is made smaller."""
 
@@ -56,16 +57,17 @@ def is_time_to_mend(run: Run, number: int) -> bool:
 def room_for_film(run: Run) -> str:
     """What a film can have in its time on this machine, in words for who plans it.
 
-    A session that resumes says the same again, also on another machine; "" where the plan was made without it.
+    A session that resumes, and a replay, say the same again, also on another machine; "" where the plan was made
+    without it.
     """
-    if run.journal.find(PlanMade()) is None:
+    if run.journal.find(PlanMade()) is None and run.options.origin != "replay":
         limit = run.limits.max_minutes
         usual = min(
             DEFAULT_RENDER_MINUTES, round(limit * _PLANNED_SHARE, 1) if limit else DEFAULT_RENDER_MINUTES
         )
         minutes, cores = run.render_minutes or usual, SYSTEM.cores()
         millions = round(minutes * 60 * cores * _SAMPLES_A_CORE_SECOND, -1)
-        text = _ROOM.format(minutes=minutes, cores=cores, millions=millions)
+        text = _ROOM.format(minutes=minutes, cores=counted(cores, "core"), millions=millions)
         run.journal.note(RoomTold(text=text))
     told = run.journal.find(RoomTold())
     return told.text if told is not None else ""

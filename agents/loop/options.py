@@ -93,7 +93,7 @@ class Options(BaseModel):
 
 
 class RunLimits(BaseModel):
-    """What one session may use: dollars (over the whole run), and minutes; how films are rendered from now on."""
+    """What one session may use: minutes; from now on, how films are rendered, and the dollars of the whole run."""
 
     model_config = ConfigDict(frozen=True)
 

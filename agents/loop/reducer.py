@@ -43,6 +43,8 @@ def after(state: RunState, event: events.Event) -> RunState:  # noqa: PLR0911, P
     state = _on_the_clock(state, event)
     if isinstance(event, _BUILDING):
         state = replace(state, is_building=True)
+    elif not state.is_building and isinstance(event, (events.ToolCalled, events.ToolAnswered)):
+        event = event.model_copy(update={"stage": ""})  # made ready for the first stage, while it is planned
     match event:
         case events.RunBegan():
             names = ("mode", "prompt", "version", "blender", "source", "models", "options")

@@ -167,8 +167,10 @@ class Run:
         return most * 60 - min(_LEAVING_SECONDS, most * 6) - (time.monotonic() - self._began)
 
     def time_left(self, stage: Stage, attempt: int) -> str:
-        """A sentence for the roles; "" in a run without a limit. A session that resumes says the same again."""
-        if self.seconds_left is not None:
+        """A sentence for the roles; "" in a run without a limit. A session that resumes, and a replay, say the same
+        again.
+        """
+        if self.seconds_left is not None and self.options.origin != "replay":
             left = max(0, round(self.seconds_left / 60))
             self.journal.note(TimeTold(stage=stage, attempt=attempt, minutes=left))
         told = self.journal.find(TimeTold(stage=stage, attempt=attempt))

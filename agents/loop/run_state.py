@@ -249,6 +249,13 @@ class RunState:
         done = sum(self.state_of(name) == "closed" for name in self.planned)
         return done / len(self.planned) if self.planned else 0.0
 
+    @property
+    def planning_state(self) -> str:
+        """What has become of the planning, in the words of ``state_of``."""
+        if self.is_building:
+            return "closed"
+        return _ended_in(self.outcome) if self.ending else "running"
+
     def state_of(self, name: str) -> str:
         """What has become of a stage: waiting, running, closed, skipped; aborted, failed or stopped with the run."""
         stage = self.stage(name)
@@ -256,4 +263,9 @@ class RunState:
             return "skipped" if self.planned and name not in self.planned else "waiting"
         if stage.state != "running" or self.ending is None:
             return stage.state
-        return self.ending.outcome if self.ending.outcome in ("aborted", "failed") else "stopped"
+        return _ended_in(self.ending.outcome)
+
+
+def _ended_in(outcome: str) -> str:
+    """What has become of what was under way as a run ended."""
+    return outcome if outcome in ("aborted", "failed") else "stopped"

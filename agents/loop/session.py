@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from agents.blender.blender_sessions import SessionSetup
 from agents.loop.algorithm import make
-from agents.loop.answer_source import LiveOptions, check_model, make_model
+from agents.loop.answer_source import LiveOptions, check_model, make_model, repeat_told
 from agents.loop.edit.edit_mode import edit
 from agents.loop.edit.inputs import check_inputs
 from agents.loop.errors import Aborted, NoRun, Stopping, Unusable
@@ -110,8 +110,10 @@ def begin(root: Path, options: Options, session: RunSession) -> Ended:
                 f", or continue the run in it: {resume_command(root)}" if (root / NAME).is_file() else "."
             )
             raise NoRun(f"{root} is not empty. Choose another folder{goes_on}")
-        check_model(options)
+        check_model(options, session.limits.max_cost)
         root.mkdir(parents=True, exist_ok=True)
+    except OverBudget as error:
+        raise Unusable(f"{error} The options: --price IN/OUT, --max-cost USD.") from error
     except ModelError as error:
         raise Unusable(f"{error} What needs no key: simworlds demo.") from error
     except OSError as error:
@@ -160,7 +162,10 @@ def _ended(run: Callable[[], Ended]) -> Ended:
     try:
         return run()
     except (Stopping, OverBudget) as stopping:
-        return Ended("stopped", str(stopping))
+        holds = (
+            " It holds until 'resume' gets another --max-cost." if isinstance(stopping, OverBudget) else ""
+        )
+        return Ended("stopped", f"{stopping}{holds}")
     except KeyboardInterrupt:
         return Ended("stopped", "You interrupted the run.")
     except Aborted as aborted:
@@ -197,8 +202,10 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
             render_minutes=limits.render_minutes,
             render_samples=limits.samples,
             max_minutes=limits.max_minutes,
+            max_cost=limits.max_cost,
         )
     )
+    repeat_told(options, journal)
     (root / "checkpoints").mkdir(exist_ok=True)
     setup = SessionSetup(
         best_sandbox(options.sandbox),
@@ -212,7 +219,7 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
     with ExitStack() as stack:
         pause = stop.event.wait  # asked to stop, nobody waits for an overloaded server
         live = LiveOptions(
-            Spending(session.limits.max_cost, options.prices), _retrying(session), pause, stack
+            Spending(journal.last("max_cost"), options.prices), _retrying(session), pause, stack
         )
         model = make_model(root, options, journal, live)
         tools = stack.enter_context(ToolClient(setup, _same_blender(options), session.watcher.progress))

@@ -111,8 +111,8 @@ def runs_table(runs: Iterable[tuple[str, RunState]]) -> Table:
     # The columns that wrap in a narrow terminal, so that names and outcomes stay whole.
     table.add_column("What", min_width=12)
     table.add_column("Outcome", no_wrap=True)
-    table.add_column("Stage", no_wrap=True)
-    table.add_column("Cost", justify="right")
+    table.add_column("Stage", min_width=11)
+    table.add_column("Cost", justify="right", min_width=8)
     table.add_column("When", min_width=10)
     for name, run_state in runs:
         table.add_row(*run_row(name, run_state))
@@ -164,7 +164,7 @@ def _stages(run_state: RunState) -> RenderableType:
     """A line for each stage: its mark, name, attempts, time."""
     table = Table.grid(padding=(0, 2, 0, 0))
     if run_state.planning:
-        mark, style = _MARKS["closed" if run_state.is_building else "running"]
+        mark, style = _MARKS[run_state.planning_state]
         table.add_row(Text(mark, style), Text("Planning"), Text(format_time(run_state.planning), "dim"))
     names = [*STAGES, *(one.name for one in run_state.stages if one.name not in STAGES)]
     for name in names:
@@ -210,7 +210,7 @@ def _costs(run_state: RunState) -> list[RenderableType]:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("Role", no_wrap=True)
     for heading in ("Calls", "Pictures", *KINDS.values(), "Cost"):
-        table.add_column(heading, justify="right", no_wrap=True)
+        table.add_column(heading, justify="right", min_width=max(map(len, heading.split())))
     for row in rows:
         kinds = [(getattr(row.usage, kind), row.dollars[kind]) for kind in KINDS]
         table.add_row(

@@ -57,7 +57,7 @@ def report(results: tuple[Path, ...], **given: Any) -> None:
             f"There is no system {given['baseline'][:80]!r} in these results. Choose one of: {names}."
         )
     result_tables = tables(result_set, baseline=given["baseline"], with_paper=given["paper"])
-    warnings = notes(result_set)
+    warnings = notes(result_set, with_paper=given["paper"])
     text = _plain(
         "\n\n".join(
             (
@@ -197,7 +197,10 @@ def _numbers(results: ResultSet, baseline: str | None, warnings: Sequence[str]) 
 
 
 def _estimate_lines(estimated: SweepEstimate) -> Iterator[str]:
-    yield f"times measured for {estimated.measured} of {estimated.scenes} scenes; the others get their category's mean"
+    yield (
+        f"times measured for {estimated.measured} of {estimated.scenes} scenes; the others get the mean of their "
+        "category's, or of all where none of it was"
+    )
     steps = {"produced": "making", "audited": "audit", "framed": "frames", "judged": "judge"}
     parts = ", ".join(
         f"{steps[step]} {_format_time(seconds)}" for step, seconds in estimated.work.items() if seconds

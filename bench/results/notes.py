@@ -13,9 +13,16 @@ if TYPE_CHECKING:
     from bench.results.scores import ResultSet, SceneResult
 
 
-def notes(results: ResultSet) -> list[str]:
+_OF_PAPER = (
+    "The paper's figures are of its own prompts, predicates and judge's prompts, of which it publishes little: those "
+    "here were written anew for the same categories and levels. They are an orientation, not a comparison."
+)
+
+
+def notes(results: ResultSet, *, with_paper: bool = False) -> list[str]:
     """The notes, as sentences."""
-    return [*results.faults, *_of_audits(results), *_of_judges(results)]
+    of_paper = [_OF_PAPER] if with_paper else []
+    return [*results.faults, *_of_audits(results), *_of_judges(results), *of_paper]
 
 
 def _of_audits(results: ResultSet) -> Iterator[str]:

@@ -90,10 +90,7 @@ class Spending:
             return
         worst = self.worst(ask)
         if worst is None:
-            raise OverBudget(
-                f"No price is known for the model {ask.model!r}, so the limit of ${self.max_cost:.2f} cannot be "
-                "kept. Give its price, or no limit."
-            )
+            raise OverBudget(no_price(ask.model, self.max_cost))
         with self._lock:
             spent = self._spent()
             if spent + self._held + worst > self.max_cost:
@@ -155,6 +152,14 @@ class Spending:
         with self._lock:
             key = (row.role, row.stage)
             self._rows[key] = self._rows.get(key, SpendingRow(row.role, row.stage)) + row
+
+
+def no_price(model: str, max_cost: float) -> str:
+    """Why a limit cannot be kept, and what to do."""
+    return (
+        f"No price is known for the model {model!r}, so the limit of ${max_cost:.2f} cannot be kept. Give its price, "
+        "in dollars per million tokens, or no limit."
+    )
 
 
 def _row(role: str, stage: str, turn: Turn) -> SpendingRow:

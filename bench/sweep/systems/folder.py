@@ -49,6 +49,12 @@ class FolderSystem:
         """Raises SystemNotReady."""
         if not self.source.is_dir():
             raise SystemNotReady(f"{self.source} is not a folder.")
+        names = {path.stem for path in FOLDER.glob("*.yaml")}
+        if not any(entry.stem in names for entry in self.source.iterdir()):
+            raise SystemNotReady(
+                f"{self.source} has no file or folder of any scene. A file is called as its scene's id, "
+                f"{min(names)}.blend; 'simworlds bench list' lists them."
+            )
 
     def is_for(self, spec: Spec) -> bool:
         """True: a scene whose file is missing is counted as missing."""

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-def summary(tape: Tape) -> str:
-    console = Console(io.StringIO(), width=120, height=40, color_system=None)
+def summary(tape: Tape, width: int = 120) -> str:
+    console = Console(io.StringIO(), width=width, height=40, color_system=None)
     console.print(run_summary(run_state_after(tape.rows)))
     assert isinstance(console.file, io.StringIO)
     return console.file.getvalue()
@@ -87,6 +87,13 @@ def test_show_has_a_table_of_costs() -> None:
     assert re.search(r"coder +2 +3 +250.0k \$1.00 +0 \$0.00 +200.0k \$1.00 +200.0k \$4.00 +\$6.00", told)
     assert re.search(r"all +3 +5 .* \$6.00 \+ 1 unpriced", told)
     assert "Cache read" not in summary(dominoes(live=False))
+
+
+def test_every_figure_stays_whole_in_a_narrow_terminal() -> None:
+    told = summary(paid(), 80)
+    assert "…" not in told
+    for figure in ("$4.00", "250.0k", "200.0k", "$6.00", "unpriced"):
+        assert figure in told
 
 
 def test_the_report_has_the_same_table(tmp_path: Path) -> None:

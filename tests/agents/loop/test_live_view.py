@@ -314,6 +314,15 @@ def test_runs_are_listed_with_how_they_stand() -> None:
     assert told[4][:2] == ["third", "unfinished"]
 
 
+def test_the_day_of_a_run_stays_whole_in_a_narrow_terminal() -> None:
+    tape = Tape()
+    tape.began("Twelve wooden dominoes stand in a chain on a table")
+    tape.add("stage.began", stage="deformation_setup")
+    tape.ended("stopped")
+    told = drawn(runs_table([("2026-11-29-120019", run_state_after(tape.rows))]), 80)
+    assert re.search(r" \d{4}-\d\d-\d\d$", told, re.MULTILINE)
+
+
 # Hostile words
 
 

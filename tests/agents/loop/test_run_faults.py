@@ -210,7 +210,7 @@ def test_a_run_whose_key_is_gone_fails_and_goes_on_once_there_is_one(
     assert played.ended.how == "failed"
     assert "ANTHROPIC_API_KEY" in played.ended.why
     api.answer = Team(decisions={"modeling": (ABORT,)})
-    assert go_on(tmp_path / "run").ended.how == "aborted"
+    assert go_on(tmp_path / "run", seat(RunLimits(max_cost=50))).ended.how == "aborted"
 
 
 # A context that grows too long

@@ -14,7 +14,7 @@ from run_sessions import MESSAGES, answered, go_on, scenes, seat, sit
 from team import ABORT, DONE, Team, call, reply, run, texts, whose
 from whole import IS_WHOLE
 
-from agents.loop.errors import NoRun
+from agents.loop.errors import NoRun, Unusable
 from agents.loop.journal import NAME, read_rows
 from agents.loop.leaving import LATEST
 from agents.loop.options import RunLimits
@@ -56,7 +56,7 @@ def test_no_call_is_made_beyond_the_limit_and_with_more_money_the_run_goes_on(
     spent = sum(row["turn"]["cost"] for row in first.of("model.answered"))
     assert 0.2 <= spent <= 1.5
     asked = len(api.requests)
-    again = go_on(tmp_path / "run", seat(RunLimits(max_cost=1.5)))
+    again = go_on(tmp_path / "run")  # by the command that was told: the limit holds
     assert (again.ended.how, len(api.requests)) == ("stopped", asked)
     assert f"${spent:.2f} are spent" in again.ended.why
     more = go_on(tmp_path / "run", seat(RunLimits(max_cost=20)))
@@ -118,9 +118,10 @@ def test_what_was_seen_of_the_same_scene_is_not_made_again(api: FakeMessagesAPI,
 def test_a_model_without_a_known_price_has_no_limit_that_could_be_kept(
     api: FakeMessagesAPI, tmp_path: Path
 ) -> None:
-    played = sit(tmp_path / "run", seat(RunLimits(max_cost=5)), model="llama-of-mine")
-    assert (played.ended.how, api.requests) == ("stopped", [])
-    assert "No price is known for the model 'llama-of-mine'" in played.ended.why
+    with pytest.raises(Unusable, match=r"No price is known for the model 'llama-of-mine'.* --price"):
+        sit(tmp_path / "run", seat(RunLimits(max_cost=5)), model="llama-of-mine")
+    assert not api.requests
+    assert not (tmp_path / "run").exists()
 
 
 def test_when_the_time_is_up_the_run_stops_at_the_next_safe_point(

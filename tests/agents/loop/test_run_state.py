@@ -167,6 +167,7 @@ def test_call_answered_in_the_next_session_is_one_call() -> None:
 
 def test_two_calls_at_a_time_get_their_own_answers() -> None:
     tape = Tape()
+    tape.add("stage.began", stage="uv")
     tape.add("tool.called", n=1, role="reviewer", stage="uv", attempt=1, name="looks", input={})
     tape.add("tool.called", n=1, role="verifier", stage="uv", attempt=1, name="blender_verify", input={})
     for role in ("reviewer", "verifier"):
@@ -178,6 +179,17 @@ def test_two_calls_at_a_time_get_their_own_answers() -> None:
         "reviewer": ("for the reviewer",),
         "verifier": ("for the verifier",),
     }
+
+
+def test_what_is_made_ready_before_the_plan_is_no_stage() -> None:
+    tape = Tape()
+    tape.began()
+    tape.add("tool.called", n=1, role="runner", stage="modeling", name="blender_checkpoint", input={})
+    tape.add("tool.answered", n=1, role="runner", stage="modeling", name="blender_checkpoint", content=[])
+    tape.ended("failed", "There is no key.")
+    state = run_state_after(tape.rows)
+    assert (state.planning_state, state.state_of("modeling"), state.stages) == ("failed", "waiting", ())
+    assert [step.is_answered for step in state.steps] == [True]
 
 
 def test_resumed_run_has_not_ended() -> None:

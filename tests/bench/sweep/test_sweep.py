@@ -6,6 +6,7 @@ import json
 import multiprocessing
 import shutil
 import signal
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
@@ -25,7 +26,6 @@ from simworlds.folder_lock import locked
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from click.testing import Result
     from sweeping import Command
@@ -212,7 +212,10 @@ def test_two_sweeps_cannot_use_one_folder(made: Path, tmp_path: Path) -> None:
     [
         (["--system", "viga"], "simworlds, replay, or folder=DIR"),
         (["--system", "folder=/nowhere"], "/nowhere is not a folder"),
-        (["--system", "simworlds"], "set ANTHROPIC_API_KEY"),
+        (["--system", f"folder={Path(__file__).parent}"], "has no file or folder of any scene"),
+        (["--system", "simworlds", "--provider", "openai"], "set OPENAI_API_KEY"),
+        (["--system", "replay", "--price", "1/2"], "--price means nothing with --system replay"),
+        (["--system", "simworlds"], "set the environment variable ANTHROPIC_API_KEY"),
         (["--system", "replay", "--no-stages"], "--no-stages means nothing with --system replay"),
         (["--system", "replay", "--scenes", "cloth_D9"], "matches no scene"),
         (["--system", "replay", "--scenes", ","], "names no scene"),
@@ -223,7 +226,7 @@ def test_two_sweeps_cannot_use_one_folder(made: Path, tmp_path: Path) -> None:
 def test_says_why_a_sweep_cannot_start(
     words: list[str], said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for name in ("ANTHROPIC_API_KEY", "ANTHROPIC_AUTH_TOKEN"):
+    for name in ("ANTHROPIC_API_KEY", "ANTHROPIC_AUTH_TOKEN", "OPENAI_API_KEY", "OPENAI_BASE_URL"):
         monkeypatch.delenv(name, raising=False)
     done = CliRunner().invoke(main, ["bench", "run", *words, "--out", str(tmp_path / "out")])
     assert (done.exit_code, said in done.stderr) == (2, True), done.stderr

@@ -124,6 +124,27 @@ def test_keeps_a_judgement_when_no_judge_is_available(
     assert judged(out, api) == before
 
 
+def test_an_earlier_judgement_is_not_passed_off_as_the_new_judges(out: Path, api: Anthropic) -> None:
+    before = judged(out, api)
+    words = ["--judge-url", api.server.base_url, "--judge-model", "mine", "--judge-max-cost", "1"]
+    rescore = ["bench", "rescore", str(out), "--judge-cache", str(out.parent / "kept"), *words]
+    done = CliRunner().invoke(main, rescore)
+    assert done.exit_code == 0
+    assert "0 judged" in done.stdout
+    assert (
+        "1 with an earlier judgement, which stays: over budget: No price is known for the model"
+        in done.stdout
+    )
+    model = before["one"].model
+    assert "not judged: over budget: No price is known for the model 'mine'" in done.stderr
+    assert f"of anthropic/{model} stays" in done.stderr
+    assert judged(out, api, provider="none") == before
+    priced = CliRunner().invoke(main, [*rescore, "--judge-price", "1/2"])
+    assert (priced.exit_code, "1 judged" in priced.stdout) == (0, True)
+    told = CliRunner().invoke(main, ["bench", "report", str(out), "--html", str(out.parent / "page.html")])
+    assert f"VLM scores are those of anthropic/{model}, prompts" in " ".join(told.output.split())
+
+
 def test_drops_a_judgement_of_frames_that_are_gone(out: Path, api: Anthropic) -> None:
     judged(out, api)
     record = read_record(out / "one" / SCENE)

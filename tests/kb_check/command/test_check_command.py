@@ -55,7 +55,7 @@ def test_a_long_line_is_cut_around_the_marker(command: Command) -> None:
     assert shown[marker.index("^") :].startswith("draw_type")
 
 
-def test_places_in_notebooks_are_those_of_cells(command: Command) -> None:
+def test_places_in_notebooks_are_those_of_cells(command: Command, base: Path) -> None:
     cells = [
         {"cell_type": "code", "source": ["%pylab\n", "import bpy"]},
         {"cell_type": "code", "source": WRONG},
@@ -66,6 +66,13 @@ def test_places_in_notebooks_are_those_of_cells(command: Command) -> None:
     (finding,) = command("--json").json["findings"]
     assert (finding["cell"], finding["line"]) == (2, 2)
     assert "file=a.ipynb,title" in command("--github").out
+    several = "--blender", f"2.90,{base.stem.removeprefix('blender-')}"
+    (command.home / "kb" / "blender-2.90.sqlite").symlink_to(base)
+    told = command(*several).out
+    assert "a.ipynb:cell 2:2:20: in " in told
+    assert "first at a.ipynb:cell 2:2." in told
+    (broken,) = command(*several, "--json").json["breaks"]
+    assert (broken["cell"], broken["line"], broken["column"]) == (2, 2, 20)
     assert command("--fix").code == 1
     assert command.read("a.ipynb") == before
 

@@ -93,6 +93,17 @@ def test_nothing_is_said_of_files_that_were_not_read(command: Command) -> None:
     assert [one.name for one in command.folder.iterdir()] == ["empty"]
 
 
+def test_what_the_project_excludes_is_left_out(command: Command) -> None:
+    place = command.write("pyproject.toml", '[tool.simworlds.check]\nexclude = ["vendor"]\n')
+    command.write("a.py", OLD)
+    command.write("vendor/b.py", OLD)
+    done = command(".", "--diff")
+    assert (done.out.count("+++ "), "a.py" in done.out) == (1, True)
+    named = command("vendor/b.py", "--diff")
+    assert named.out == ""
+    assert named.err.startswith(f"Warning: vendor/b.py was left out: {place} excludes it.\n")
+
+
 def test_notebooks_stay_as_they_are_and_the_rest_is_migrated(command: Command) -> None:
     cells = [{"cell_type": "code", "source": [OLD]}]
     book = command.write("a/book.ipynb", json.dumps({"cells": cells}))
