@@ -5,6 +5,7 @@ Only Text goes into what is drawn, never markup, and every text is cleaned: name
 
 from __future__ import annotations
 
+from datetime import datetime
 from typing import TYPE_CHECKING
 
 from rich import box
@@ -109,14 +110,22 @@ def runs_table(runs: Iterable[tuple[str, RunState]]) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("Run", no_wrap=True)
     # The columns that wrap in a narrow terminal, so that names and outcomes stay whole.
-    table.add_column("What", min_width=12)
+    table.add_column("What", min_width=10)
     table.add_column("Outcome", no_wrap=True)
     table.add_column("Stage", min_width=11)
     table.add_column("Cost", justify="right", min_width=8)
-    table.add_column("When", min_width=10)
+    table.add_column("When", no_wrap=True)
     for name, run_state in runs:
         table.add_row(*run_row(name, run_state))
     return table
+
+
+def _day(moment: datetime | None) -> str:
+    """The day in local time, of today the hour instead: so much stays whole in a narrow terminal."""
+    if moment is None:
+        return ""
+    local = moment.astimezone()
+    return local.strftime("%H:%M" if local.date() == datetime.now().astimezone().date() else "%Y-%m-%d")
 
 
 def run_row(name: str, run_state: RunState) -> tuple[Text, ...]:
@@ -132,7 +141,6 @@ def run_row(name: str, run_state: RunState) -> tuple[Text, ...]:
             if run_state.stages
             else "plan"
         )
-    when = run_state.latest.astimezone().strftime("%Y-%m-%d %H:%M") if run_state.latest else ""
     total = run_state.total
     cost = format_cost(total) if total.calls or total.cost else "recorded" if total.recorded else ""
     return (
@@ -141,7 +149,7 @@ def run_row(name: str, run_state: RunState) -> tuple[Text, ...]:
         Text(shortened(run_state.outcome, 20), _OUTCOMES.get(run_state.outcome, "")),
         Text(where),
         Text(cost),
-        Text(when),
+        Text(_day(run_state.latest)),
     )
 
 
