@@ -9,6 +9,7 @@ import sys
 import time
 import zlib
 from contextlib import suppress
+from dataclasses import astuple
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -51,7 +52,7 @@ class ResultCache:
 
     def put(self, key: bytes, files: Iterable[Sequence[Finding]]) -> None:
         """Keeps the findings of each file of a group."""
-        plain = [[_to_json(finding) for finding in findings] for findings in files]
+        plain = [[astuple(finding) for finding in findings] for findings in files]
         value = zlib.compress(json.dumps(plain, separators=(",", ":")).encode(), 1)
         self._execute("INSERT OR REPLACE INTO results VALUES (?, ?, ?)", (key, time.time(), value))
 
@@ -130,22 +131,10 @@ def code_digest() -> str:
     return digest.hexdigest()
 
 
-def _to_json(finding: Finding) -> list[Any]:
-    fix = finding.fix
-    edits = [[*_numbers(edit.span), edit.text] for edit in fix.edits] if fix else []
-    return [
-        finding.rule, finding.severity, _numbers(finding.span), finding.message, finding.symbol,
-        list(finding.instead), [fix.title, fix.sure, edits] if fix else None, list(finding.absent),
-    ]  # fmt: skip
-
-
-def _numbers(span: Span) -> list[int]:
-    return [span.line, span.column, span.end_line, span.end_column]
-
-
 def _from_json(row: Any) -> Finding:
+    """A finding from its fields in their order, as ``astuple`` gives them."""
     rule, severity, span, message, symbol, instead, fix, absent = row
     if fix is not None:
-        title, sure, edits = fix
-        fix = Fix(title, tuple(Edit(Span(*numbers), text) for *numbers, text in edits), sure)
+        title, edits, sure = fix
+        fix = Fix(title, tuple(Edit(Span(*numbers), text) for numbers, text in edits), sure)
     return Finding(rule, severity, Span(*span), message, symbol, tuple(instead), fix, tuple(absent))

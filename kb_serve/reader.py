@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
-from kb_build.schema import Mark, NoBase, open_read_only, unpack
+from kb_build.schema import FORM_NAME, Mark, NoBase, open_read_only, unpack
 from kb_build.symbols.api_names import COLLECTION, TYPES
 from kb_build.symbols.object_data import data_class
 from kb_build.symbols.records import Page, PanelCondition, Symbol, page_from_json, symbol_from_json
@@ -573,8 +573,8 @@ class BaseReader:
     def functions_named(self, prefix: str) -> list[str]:
         """Paths of the functions of data classes whose names begin with a key."""
         sql = """SELECT DISTINCT path FROM names JOIN symbols ON symbols.path = names.id
-            WHERE form = 2 AND key >= ? AND key < ? AND kind = 'function' AND owner LIKE 'bpy.types.%'"""
-        return [row[0] for row in self.rows(sql, prefix, prefix + "\uffff")] if prefix else []
+            WHERE form = ? AND key >= ? AND key < ? AND kind = 'function' AND owner LIKE 'bpy.types.%'"""
+        return [row[0] for row in self.rows(sql, FORM_NAME, prefix, prefix + "\uffff")] if prefix else []
 
     def symbols_of_page(self, slug: str) -> list[str]:
         """The symbols that a page explains, by Blender's own table."""

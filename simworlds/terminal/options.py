@@ -41,7 +41,7 @@ class _Program(click.Path):
     """An executable, or the folder that it is in: as an absolute path, which holds wherever it is used later."""
 
     def __init__(self) -> None:
-        super().__init__(exists=True, path_type=Path)
+        super().__init__(path_type=Path)
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
@@ -50,6 +50,10 @@ class _Program(click.Path):
         ``~``.
         """
         path = Path(shutil.which(value) or value).expanduser().absolute()
+        if not path.exists():
+            self.fail(
+                f"There is no Blender at {path}. Give the path of the program, or of its folder.", param, ctx
+            )
         return super().convert(path, param, ctx)
 
 

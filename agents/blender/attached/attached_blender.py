@@ -246,15 +246,15 @@ class AttachedBlender:
         except (OSError, EOFError, channel.ForgedFrame):
             return self._lost("")
 
-    def _lost(self, why: str) -> str:
-        """Disconnects; in words what happened, and what can be done."""
+    def _lost(self, why: str, call: str = "Nothing of this call was done.") -> str:
+        """Disconnects; in words what happened, what is known of the call, and what can be done."""
         was = self._about
         self._disconnect()
         said = why or f"{was} has ended: it crashed or was killed."
         copy = f" A copy from before the first change is {self._copy}." if self._copy else ""
         recover = "" if why else " Blender's own copy may be opened with File > Recover."
         return (
-            f"{said}{copy}{recover} Nothing of this call was done. When Blender is open again, with Start pressed in "
+            f"{said}{copy}{recover} {call} When Blender is open again, with Start pressed in "
             "its panel SimWorlds, call again: the connection is then made anew. Read the scene's state first."
         )
 
@@ -327,6 +327,4 @@ class AttachedBlender:
         )
 
     def _lost_during(self, what: str, why: str) -> str:
-        return self._lost(why).replace(
-            "Nothing of this call was done.", f"Whether {what} was done is not known."
-        )
+        return self._lost(why, f"Whether {what} was done is not known.")

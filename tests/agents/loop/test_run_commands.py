@@ -99,7 +99,7 @@ def test_a_limit_that_is_reached_is_exit_code_3(home: Path, tmp_path: Path) -> N
         (("make", "A crate", "--max-minutes", "0"), "--max-minutes"),
         (("demo", "no-such"), "There is no demo 'no-such'"),
         (("demo", "velvet", "--blender", "five"), "'five' is not a Blender version"),
-        (("demo", "velvet", "--blender-exe", "/nowhere/blender"), "'/nowhere/blender' does not exist"),
+        (("demo", "velvet", "--blender-exe", "/nowhere/blender"), "There is no Blender at /nowhere/blender."),
         (("resume", "/nowhere/at/all"), "is not a run"),
         (("replay", "/nowhere/at/all"), "does not hold a record"),
         (("show", "/nowhere/at/all"), "is not a run"),

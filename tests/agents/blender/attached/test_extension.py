@@ -122,7 +122,7 @@ def test_a_program_that_is_no_blender_is_told(tmp_path: Path) -> None:
     assert result.exit_code == 2
     assert "tells no version of a Blender" in result.output
     gone = CliRunner().invoke(command, ["install", "--blender-exe", str(tmp_path / "none")])
-    assert "cannot be started" in gone.output
+    assert "There is no Blender at" in gone.output
 
 
 def invoke_with_a_blender(folder: Path, installing: str, checking: str) -> tuple[int, str]:
