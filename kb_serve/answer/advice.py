@@ -153,6 +153,19 @@ _BUMPED_INTO = (
     "What cloth, a soft body or particles are to bump into needs a modifier of its own: "
     "`other.modifiers.new(\"Collision\", 'COLLISION')`."
 )
+_IN_RADIANS = "Angles are in radians: `ob.rotation_euler.z = math.radians(90)`."
+_ONE_POINT = (
+    "A new spline has one point already: `spline.points.add(len(path) - 1)` makes as many as there are places in "
+    "`path`."
+)
+_BASIS = (
+    "The first shape key is the one that the others are relative to, and its `value` changes nothing: "
+    '`ob.shape_key_add(name="Basis")` comes before that with the new shape.'
+)
+_EXPRESSED = (
+    "An expression knows its driver's variables, `frame`, the functions of Python's `math` without that name "
+    "(`sin(frame / 10)`), `clamp`, `lerp`, `smoothstep`, and `self` while `driver.use_self` is True."
+)
 _ADDED_TO_WORLD = (
     "`bpy.ops.rigidbody.world_add()` leaves the `collection` and the `constraints` of the world None. After "
     '`scene.rigidbody_world.collection = bpy.data.collections.new("Bodies")` a script needs no selection: '
@@ -419,6 +432,24 @@ ADVICE: tuple[Advice, ...] = (
     Advice(_IN_ZONES, frozenset({"bpy.ops.ptcache.bake_all"}), asked=_stems("geometry node nodes zone")),
     Advice(TAKES_NO_MODIFIER, _of("ObjectModifiers.new"), asked=_stems("none nothing fails silently")),
     Advice(_TYPED, _of("TextCurve.body"), asked=_stems("animate change counter frame keyframe over time")),
+    Advice(_IN_RADIANS, wherever=(_stems("degree degrees"), _stems("angle euler rotate rotation"))),
+    Advice(
+        _ONE_POINT,
+        _of("CurveSplines.new", "SplinePoints.add", "SplineBezierPoints.add"),
+        about=_stems("bezier curve points spline"),
+    ),
+    Advice(
+        _BASIS,
+        wherever=(
+            _stems("shape"),
+            _stems("key keys shapekey"),
+            _stems("basis effect first no nothing same single work"),
+        ),
+    ),
+    Advice(
+        _EXPRESSED,
+        wherever=(_stems("driver drivers"), _stems("cos expression function functions math scripted sin")),
+    ),
     Advice(
         _ADDED_TO_WORLD,
         _of("RigidBodyWorld.collection", "RigidBodyWorld.constraints"),

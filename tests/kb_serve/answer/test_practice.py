@@ -627,6 +627,55 @@ def test_what_other_functions_return_is_no_dictionary(kb: KnowledgeBase) -> None
     assert "**Returns**\n" in kb.query("bpy.types.Object.ray_cast").text
 
 
+# What Blender lets pass
+
+
+def test_angles_in_degrees_are_told_to_be_radians(reader: BaseReader) -> None:
+    path = f"{TYPES}Object.rotation_euler"
+    assert "`ob.rotation_euler.z = math.radians(90)`" in said(reader, path, "use degrees for rotation_euler")
+    assert "math.radians" not in said(reader, path, "rotate an object")
+
+
+def test_a_new_spline_has_a_point(reader: BaseReader) -> None:
+    question = "how many points to add to a new spline"
+    assert "`spline.points.add(len(path) - 1)`" in said(reader, f"{TYPES}SplinePoints.add", question)
+    curve = bpy.data.curves.new("curve", "CURVE")
+    for kind, points in (("POLY", "points"), ("NURBS", "points"), ("BEZIER", "bezier_points")):
+        assert len(getattr(curve.splines.new(kind), points)) == 1
+
+
+def test_the_value_of_the_first_shape_key_changes_nothing(reader: BaseReader) -> None:
+    told = said(reader, f"{TYPES}Object.shape_key_add", "my first shape key has no effect")
+    assert '`ob.shape_key_add(name="Basis")` comes before' in told
+    bpy.ops.mesh.primitive_cube_add()
+    ob = bpy.context.object
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    moved: list[float] = []
+    for name in ("Smile", "Frown"):
+        key = ob.shape_key_add(name=name)
+        for point in key.data:
+            point.co.z += 9
+        heights: list[float] = []
+        for value in (0, 1):
+            key.value = value
+            depsgraph.update()
+            heights.append(ob.evaluated_get(depsgraph).data.vertices[0].co.z)
+        moved.append(heights[1] - heights[0])
+    assert moved == [0, pytest.approx(9)]
+
+
+def test_what_an_expression_of_a_driver_knows_is_told(reader: BaseReader) -> None:
+    told = said(reader, f"{TYPES}Driver.expression", "what functions can I use in a driver expression")
+    ob = bpy.data.objects.new("a", None)
+    bpy.context.scene.collection.objects.link(ob)
+    driver = ob.driver_add("location", 0).driver
+    for expression in ("sin(frame / 10)", "clamp(frame)", "lerp(0, 1, 0.5)", "smoothstep(0, 1, 0.5)"):
+        assert f"`{expression.partition('(')[0]}" in told
+        driver.expression = expression
+        bpy.context.scene.frame_set(5)
+        assert driver.is_valid
+
+
 # Simulations
 
 
