@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field, model_validator
 
-from agents.blender.formatting import format_list
 from agents.blender.readable_files import find_readable
 from agents.blender.second_blender import second_blender
+from simworlds.counting import format_list
 from simworlds.sandbox.errors import BlenderError, NotThere, Refusal
 from simworlds.sandbox.hostile_ground import DEEPEST, HostileGround, copy_folder, copy_to
 from simworlds.sandbox.replies import Claim, Count, Name, Place

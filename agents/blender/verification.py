@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import ConfigDict, Field
 
-from agents.blender.formatting import format_list
 from agents.plan.part import STAGES
 from agents.protocol.engine import verify
 from agents.protocol.facts import SceneFacts
 from agents.protocol.findings import Finding
 from agents.protocol.rules_by_stage import first_stage
+from simworlds.counting import format_list
 from simworlds.sandbox.errors import Refusal, ToolBroke
 from simworlds.sandbox.replies import Claim, Frame, Name, Text
 

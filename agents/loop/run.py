@@ -16,7 +16,6 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from agents.blender.formatting import format_list
 from agents.blender.saved_files import move_saved
 from agents.blender.tools.scene_order import words_of
 from agents.loop.acceptance import AcceptanceRecord
@@ -39,6 +38,7 @@ from agents.loop.tool_client import ToolOutcome
 from agents.loop.withdrawals import as_soft
 from agents.roles import coder, planner, reviewer
 from agents.roles.base import RoleContext
+from simworlds.counting import format_list
 from simworlds.files import write_whole
 from simworlds.llm.messages import Picture, Text, ToolResult
 

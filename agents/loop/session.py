@@ -6,6 +6,7 @@ import logging
 import os
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal, Protocol
 
 from pydantic import ValidationError
@@ -38,7 +39,6 @@ from simworlds.sandbox.launch import find_blender
 if TYPE_CHECKING:
     import threading
     from collections.abc import Callable
-    from pathlib import Path
 
     from agents.loop.events import Event
     from simworlds.llm.retries import Retry
@@ -190,7 +190,7 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
             mode=options.mode,
             prompt=options.prompt,
             source=options.source_text,
-            models={role: options.model_of(role) for role in ROLES},
+            models=_models(options),
             blender=find_blender(options.blender, options.blender_exe).version,
             options=options.model_dump(mode="json"),
         )
@@ -235,6 +235,17 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
         finally:
             stop.tools = None
     return Ended("done", "", root / SCENE, rendering.path)
+
+
+def _models(options: Options) -> dict[str, str]:
+    """Role → the model that answers, or answered in the record; none where a transcript was written."""
+    match options.origin:
+        case "session":
+            return {}
+        case "replay":
+            return dict(read_run_state(Path(options.source)).models)
+        case _:
+            return {role: options.model_of(role) for role in ROLES}
 
 
 def _options(journal: Journal) -> Options:

@@ -11,6 +11,7 @@ import click
 
 from bench.commands.scenes import chosen_spec
 from bench.commands.shared_options import blender_options, tell_on_terminal, with_audit_options
+from simworlds.counting import format_list
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,6 +23,7 @@ _PATH = click.Path(path_type=Path)
 _MARKS = {"passed": "✓", "failed": "✗", "not_applicable": "–"}
 _HOLDS = {"holds": "✓", "does not hold": "✗", "not scored": "–"}
 _SEEN_WIDTH = 140
+_NAMED = 6  # objects of an actor
 
 
 @click.command()
@@ -88,7 +90,7 @@ def _relation(relation: RelationResult) -> str:
 
 
 def _headline(actor: ActorAudit) -> str:
-    objects = ", ".join(actor.evidence.get("objects", ())[:6])
+    objects = format_list(actor.evidence.get("objects", ()), _NAMED)
     how = f"{actor.outcome} by {actor.by}: {objects}" if objects else actor.outcome
     return f"{actor.name} ({actor.role}) {_share(actor.score)}   {how}"
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from bench.validity.proof import OLD_NAMES, PROPERTIES
+from simworlds.counting import counted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -54,7 +55,7 @@ def validate(scenes: str, properties: str, jobs: int, output: Path | None, again
     tasks = [ProofTask(spec, asked, again) for spec in chosen]
     done_by_scene: dict[str, ProvenScene] = {}
     started = time.monotonic()
-    click.echo(f"{len(tasks)} scenes, {', '.join(asked)}", err=True)
+    click.echo(f"{counted(len(tasks), 'scene')}, {', '.join(asked)}", err=True)
     try:
         for done in prove_all(tasks, jobs):
             done_by_scene[done.scene] = done

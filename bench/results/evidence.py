@@ -21,6 +21,7 @@ from pydantic import BaseModel, ValidationError
 from bench.judge.verdicts import Judgement
 from bench.results.audit_file import AuditFile
 from bench.results.scores import METRICS, TITLES
+from simworlds.counting import format_list
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -34,6 +35,7 @@ M = TypeVar("M", bound=BaseModel)
 _WIDTH = 480  # pixels of a frame on the page
 _QUALITY = 74
 _MOST_PIXELS = 20_000_000
+_NAMED = 6  # objects of an actor
 _LARGEST = 64 << 20  # bytes of a file of the results
 _LONGEST_SEEN = 260  # letters
 _LONGEST_SHARE = 3  # digits of a frame's place in the film, in percent
@@ -188,7 +190,7 @@ def _mechanism(audit: AuditFile) -> Iterator[EvidencePart]:
 
 
 def _actor_subtitle(actor: ActorRow) -> str:
-    objects = ", ".join(actor.evidence.objects[:6])
+    objects = format_list(actor.evidence.objects, _NAMED)
     how = f"{actor.outcome} by {actor.by}: {objects}" if objects else actor.outcome
     return f"{actor.role.replace('_', ' ')}, {how}"
 

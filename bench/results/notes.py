@@ -39,8 +39,7 @@ def _of_audits(results: ResultSet) -> Iterator[str]:
 
 
 def _of_judges(results: ResultSet) -> Iterator[str]:
-    judgements = [judged for scene in _all(results) if (judged := scene.record.judged) and judged.why is None]
-    judges = {f"{judged.provider}/{judged.model}, prompts {judged.prompt_version}" for judged in judgements}
+    judges = {scene.judge for scene in _all(results) if scene.judge}
     if len(judges) == 1:
         yield f"VLM scores are those of {judges.pop()}; they compare only with others of the same judge."
     elif judges:

@@ -138,7 +138,10 @@ def _cards(spec: Spec, systems: Sequence[SystemResults]) -> tuple[SceneCard, ...
 
 
 def _best(scenes: Sequence[SceneResult | None], metric: Metric) -> float | None:
-    """The highest of several different scores; -1 if there are none."""
+    """The highest of several different scores; -1 if there are none, or if they come from several judges."""
+    judges = {scene.judge for scene in scenes if scene is not None and scene.judge}
+    if metric == "vlm" and len(judges) > 1:
+        return -1.0
     known = {score for scene in scenes if scene is not None and (score := scene.score(metric)) is not None}
     return max(known) if len(known) > 1 else -1.0
 

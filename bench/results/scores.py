@@ -45,6 +45,14 @@ class SceneResult:
             return None
         return audited.mpr if metric == "mpr" else audited.spr
 
+    @property
+    def judge(self) -> str:
+        """Who judged it, with which prompts; "" if nobody did."""
+        judged = self.record.judged
+        if judged is None or judged.why is not None:
+            return ""
+        return f"{judged.provider}/{judged.model}, prompts {judged.prompt_version}"
+
     def why_not(self, metric: Metric) -> str:
         """Why there is no score, in words; "" if there is one, or it does not count."""
         if not self.asks(metric) or self.score(metric) is not None:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from agents.blender.attached.attached_blender import TooLarge
 from agents.blender.attached.tools import bake, execute, show, undo, view
 from agents.blender.attached.tools.base import AttachedTool
-from agents.blender.formatting import format_list
 from agents.blender.tools import (
     files,
     group,
@@ -24,6 +23,7 @@ from agents.blender.tools import (
     verify,
 )
 from agents.blender.tools.base import BlenderTool, ToolContext
+from simworlds.counting import format_list
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:

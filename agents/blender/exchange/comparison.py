@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from agents.blender.formatting import format_list
-from simworlds.counting import counted
+from simworlds.counting import counted, format_list
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

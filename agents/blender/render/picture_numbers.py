@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from PIL import Image, ImageChops
 
-from agents.blender.formatting import format_list
+from simworlds.counting import format_list
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence

@@ -11,12 +11,11 @@ from pydantic import Field
 
 from agents.blender.assets.library import AssetLibrary, Kind, LibraryAsset, find_assets
 from agents.blender.assets.replies import PlacedAsset
-from agents.blender.formatting import format_list
 from agents.blender.sheets import contact_sheet
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
 from agents.blender.tools.kept_scene import kept_scene
 from agents.blender.tools.preview_files import new_preview
-from simworlds.counting import counted
+from simworlds.counting import counted, format_list
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:

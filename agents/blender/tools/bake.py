@@ -6,8 +6,8 @@ from typing import Any
 
 from pydantic import Field
 
-from agents.blender.formatting import format_list
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
+from simworlds.counting import format_list
 from simworlds.sandbox.replies import Claim, Name
 
 _LISTED = 20

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import Field
 
 from agents.blender.checkpoints import KEPT
-from agents.blender.formatting import format_list, format_size
+from agents.blender.formatting import format_size
 from agents.blender.saved_files import (
     COPY_NAME,
     CacheReport,
@@ -26,7 +26,7 @@ from agents.blender.saved_files import (
     staging,
 )
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
-from simworlds.counting import counted
+from simworlds.counting import counted, format_list
 from simworlds.sandbox.errors import Refusal, ToolBroke
 
 if TYPE_CHECKING:

@@ -7,10 +7,9 @@ from typing import Any
 
 from pydantic import Field
 
-from agents.blender.formatting import format_list
 from agents.blender.tools.base import Arguments, BlenderTool, Call, CallContext, Result
 from agents.protocol.vocabulary import DeformationKind, MotionKind
-from simworlds.counting import counted
+from simworlds.counting import counted, format_list
 
 _SECONDS = 120.0
 _MOST = 500

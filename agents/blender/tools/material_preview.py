@@ -8,14 +8,13 @@ from PIL import Image
 from pydantic import Field
 from pydantic.json_schema import SkipJsonSchema
 
-from agents.blender.formatting import format_list
 from agents.blender.render.kept_pictures import KeptPictures
 from agents.blender.sheets import contact_sheet
 from agents.blender.sheets.view_reply import LitObject, MaterialReply
 from agents.blender.sheets.worker_pictures import taken_picture
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
 from agents.blender.tools.preview_files import FOLDER, new_preview
-from simworlds.counting import counted
+from simworlds.counting import counted, format_list
 from simworlds.sandbox.errors import Refusal
 from simworlds.sandbox.replies import Frame
 

@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Annotated
 from PIL import Image
 from pydantic import Field
 
-from agents.blender.formatting import format_list
 from agents.blender.sheets import contact_sheet
 from agents.blender.sheets.text_layout import format_length
 from agents.blender.sheets.view_reply import PreviewReply
 from agents.blender.sheets.worker_pictures import taken_picture
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from agents.blender.tools.preview_files import new_preview
-from simworlds.counting import counted
+from simworlds.counting import counted, format_list
 
 if TYPE_CHECKING:
     from agents.blender.sheets.view_reply import DrawnView

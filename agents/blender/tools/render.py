@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Field, model_validator
 from pydantic.json_schema import SkipJsonSchema
 
-from agents.blender.formatting import format_list
 from agents.blender.render.frame_cache import FrameCache
 from agents.blender.render.frame_renderer import FrameRenderer
 from agents.blender.render.image_checks import LARGEST_STILL, RenderedPicture, image_faults, look_at
@@ -16,7 +15,7 @@ from agents.blender.render.picture_numbers import format_subjects
 from agents.blender.render.render_budget import RenderBudget
 from agents.blender.render.render_loop import RenderOutcome, StillStore, render_frames
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
-from simworlds.counting import counted
+from simworlds.counting import counted, format_list
 from simworlds.sandbox.errors import BlenderError, Refusal
 
 if TYPE_CHECKING:

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import Field
 
 from agents.blender.attached.attached_blender import TooLarge
-from agents.blender.formatting import format_list
 from agents.blender.preflight import PreFlight, check_before_running
 from agents.blender.tools import execute
 from agents.blender.tools.base import BlenderTool, Call, Result
 from agents.blender.tools.execute import ExecuteArguments, Outcome, describe, title_of
+from simworlds.counting import format_list
 from simworlds.sandbox.errors import Lost, Refusal
 from simworlds.sandbox.replies import Text  # noqa: TC001 - annotates fields of models
 

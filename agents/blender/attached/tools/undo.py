@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from pydantic import Field
 
-from agents.blender.formatting import format_list
 from agents.blender.tools.base import Arguments, Call, Result
+from simworlds.counting import format_list
 from simworlds.sandbox.replies import Claim, Count, Name
 
 if TYPE_CHECKING:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import Field
 
 from agents.blender.attached.attached_blender import TooLarge
-from agents.blender.formatting import format_list
 from agents.blender.sheets.worker_pictures import taken_picture
 from agents.blender.tools.base import Arguments, Call, Result
 from agents.blender.tools.preview_files import new_preview
+from simworlds.counting import format_list
 from simworlds.sandbox.replies import Claim, Frame, Name, Place, mapping
 
 if TYPE_CHECKING:
