@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from agents.roles.names import ROLES
+from simworlds.llm.providers import PROVIDERS, TOLD_DEFAULTS
 from simworlds.operating_system import SYSTEM
 from simworlds.own_command import own_command
 from simworlds.terminal.finite_range import FiniteRange
@@ -59,15 +60,15 @@ _limits = combine(
 _model = combine(
     click.option(
         "--provider",
-        type=click.Choice(["anthropic", "openai"]),
-        default="anthropic",
+        type=click.Choice(PROVIDERS),
+        default=PROVIDERS[0],
         show_default=True,
         help="The API: Messages, or chat completions as of OpenAI, Ollama, vLLM.",
     ),
     click.option(
         "--model",
         metavar="NAME",
-        help="The model for all roles.  [default: claude-opus-5-5, or gpt-5.5 of openai]",
+        help=f"The model for all roles.  [default: {TOLD_DEFAULTS}]",
     ),
     click.option(
         "--price", metavar="IN/OUT", help="Dollars per million tokens, of models that are in no list."

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from bench.commands.shared_options import MEMORY, judge_cache, price_of, with_blender_version
+from simworlds.llm.providers import PROVIDERS, TOLD_DEFAULTS
 from simworlds.terminal.finite_range import FiniteRange
 
 if TYPE_CHECKING:
@@ -132,10 +133,8 @@ def run(folder: Path, **given: Any) -> None:
 @click.option(
     "--peer", is_flag=True, help="The peer's convention: goals resized to the renders, nothing × 100."
 )
-@click.option("--judge", type=click.Choice(["anthropic", "openai"]), help="Have a model give the four marks.")
-@click.option(
-    "--model", metavar="NAME", help="The judge's.  [default: claude-opus-5-5, or gpt-5.5 of openai]"
-)
+@click.option("--judge", type=click.Choice(PROVIDERS), help="Have a model give the four marks.")
+@click.option("--model", metavar="NAME", help=f"The judge's.  [default: {TOLD_DEFAULTS}]")
 @click.option("--base-url", metavar="URL", help="Another server that speaks the judge's API.")
 @click.option("--cache", type=_PATH, help="Folder that marks are kept in.  [default: of SimWorlds]")
 @click.option("--max-cost", type=FiniteRange(0), metavar="USD", help="Ask no judge beyond it.")

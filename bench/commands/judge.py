@@ -12,6 +12,7 @@ import click
 
 from bench.commands.scenes import chosen_spec
 from bench.commands.shared_options import judge_cache, price_of, tell_on_terminal
+from simworlds.llm.providers import PROVIDERS, TOLD_DEFAULTS
 from simworlds.terminal.finite_range import FiniteRange
 
 if TYPE_CHECKING:
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from bench.judge.verdicts import Judgement
 
 _PATH = click.Path(path_type=Path)
-_PROVIDERS = ("anthropic", "openai")
 _PASSING = ("refused", "cut short", "malformed")  # another attempt may succeed
 
 
@@ -33,8 +33,8 @@ _PASSING = ("refused", "cut short", "malformed")  # another attempt may succeed
 @click.option("--scene", metavar="ID", help="Judge by this scene's prompt (see list), or a YAML file's.")
 @click.option("--prompt", metavar="TEXT", help="Judge by a prompt of your own.")
 @click.option("--static", is_flag=True, help="The prompt asks for a still. Not needed with --scene.")
-@click.option("--provider", type=click.Choice(_PROVIDERS), default="anthropic", show_default=True)
-@click.option("--model", metavar="NAME", help="The model.  [default: claude-opus-5-5, or gpt-5.5 of openai]")
+@click.option("--provider", type=click.Choice(PROVIDERS), default="anthropic", show_default=True)
+@click.option("--model", metavar="NAME", help=f"The model.  [default: {TOLD_DEFAULTS}]")
 @click.option("--base-url", metavar="URL", help="Another server with the provider's API.")
 @click.option("--repeat", type=click.IntRange(1, 100), default=1, show_default=True, help="Judge so often.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")

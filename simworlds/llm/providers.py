@@ -18,6 +18,10 @@ PROVIDERS: tuple[ProviderName, ...] = get_args(ProviderName)
 
 # One strong model that sees pictures of each: the newest of the paper's line, and the paper's own judge.
 DEFAULT_MODELS: dict[ProviderName, str] = {"anthropic": "claude-opus-5-5", "openai": "gpt-5.5"}
+TOLD_DEFAULTS = ", or ".join(
+    model if name == PROVIDERS[0] else f"{model} of {name}" for name, model in DEFAULT_MODELS.items()
+)
+"""The same in words, as options tell it."""
 
 
 class Connection(Protocol):
