@@ -145,11 +145,10 @@ def _groups(paths: Sequence[Path], faults: list[str]) -> list[Group]:
     from kb_check.configuration import read_configuration  # noqa: PLC0415 - not for --help
     from kb_check.inputs import read_inputs  # noqa: PLC0415
 
-    if _is_stdin(paths):
-        inputs = read_inputs((), read_configuration(Path()), reads_stdin=True)
-    else:
-        configuration = read_configuration(paths[0] if paths[0].is_dir() else paths[0].parent)
-        inputs = read_inputs(paths, configuration, gitignore=configuration.gitignore)
+    reads_stdin = _is_stdin(paths)  # which goes with no other path
+    configuration = read_configuration(paths[0] if paths[0].is_dir() else paths[0].parent)
+    named = () if reads_stdin else paths
+    inputs = read_inputs(named, configuration, reads_stdin=reads_stdin, gitignore=configuration.gitignore)
     for warning in inputs.left_out:
         click.echo(f"Warning: {warning}", err=True)
     faults += inputs.faults

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from kb_check.configuration import Configuration
 from kb_check.formats.json_format import span_as_json
-from kb_check.formats.text import place_of
+from kb_check.formats.text import line_of, place_of
 from kb_check.project import Project
 from kb_check.run import Run
 from kb_serve.locate import find_bases
@@ -121,7 +121,7 @@ class VersionsReport:
 
     def _first(self, version: str) -> str:
         row = next(row for row in self.breaks() if version in row.versions)
-        return place_of(row.file, row.finding).rpartition(":")[0]
+        return line_of(row.file, row.finding)
 
     # Ways to write it.
 

@@ -15,7 +15,6 @@ from bench.blenderbench.errors import EditSystemNotReady, TaskFailed
 from bench.blenderbench.results import round_file
 from bench.blenderbench.task_scenes import EditRenderSettings, render
 from bench.sweep.command import last_output, run_simworlds
-from bench.sweep.systems.simworlds_runs import KEYS
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -30,6 +29,7 @@ BUDGET = (
     f"SimWorlds' own: {MAX_RETRIES_PER_STAGE} retries and {MAX_REPLANS_PER_STAGE} replans a stage (the paper compares "
     "at 6 iterations)"
 )
+_KEYS = ("ANTHROPIC_API_KEY", "ANTHROPIC_AUTH_TOKEN")
 _ENDED = ("done", "aborted")
 _LOG = "edit.log"
 
@@ -64,9 +64,9 @@ class SimWorldsEdit:
         """Edits, or resumes an interrupted edit; renders the result."""
         before = _history(place)
         ended = before is not None and before.outcome in _ENDED
-        if not ended and not any(os.environ.get(name) for name in KEYS):
+        if not ended and not any(os.environ.get(name) for name in _KEYS):
             raise EditSystemNotReady(
-                f"'simworlds edit' asks a language model and needs a key: set {KEYS[0]}."
+                f"'simworlds edit' asks a language model and needs a key: set {_KEYS[0]}."
             )
         started, loss = prepare_start(task, place, self.rendering, tell)
         if not ended:

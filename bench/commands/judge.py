@@ -33,7 +33,7 @@ _PASSING = ("refused", "cut short", "malformed")  # another attempt may succeed
 @click.option("--scene", metavar="ID", help="Judge by this scene's prompt (see list), or a YAML file's.")
 @click.option("--prompt", metavar="TEXT", help="Judge by a prompt of your own.")
 @click.option("--static", is_flag=True, help="The prompt asks for a still. Not needed with --scene.")
-@click.option("--provider", type=click.Choice(PROVIDERS), default="anthropic", show_default=True)
+@click.option("--provider", type=click.Choice(PROVIDERS), default=PROVIDERS[0], show_default=True)
 @click.option("--model", metavar="NAME", help=f"The model.  [default: {TOLD_DEFAULTS}]")
 @click.option("--base-url", metavar="URL", help="Another server with the provider's API.")
 @click.option("--repeat", type=click.IntRange(1, 100), default=1, show_default=True, help="Judge so often.")

@@ -34,8 +34,13 @@ def text_lines(report: Report) -> Iterator[Line]:
 
 def place_of(file: FileReport, finding: Finding) -> str:
     """``path:line:column``, or ``path:cell 3:line:column`` in a notebook; columns count from 1."""
+    return f"{line_of(file, finding)}:{finding.span.column + 1}"
+
+
+def line_of(file: FileReport, finding: Finding) -> str:
+    """The same without the column."""
     cell, line = file.source.place(finding.span.line)
-    return f"{file.name}:{f'cell {cell}:' if cell else ''}{line}:{finding.span.column + 1}"
+    return f"{file.name}:{f'cell {cell}:' if cell else ''}{line}"
 
 
 def _finding(file: FileReport, finding: Finding) -> Iterator[Line]:

@@ -43,12 +43,11 @@ _ARGUMENTS = {
 def _check(script: Script) -> Iterator[Finding]:
     for path, value in _angles(script):
         parts = items(script, value) or [value]
-        turned = [
-            part for part in parts if (found := number(script, part)) is not None and _is_degrees(found)
-        ]
-        if not turned or any(part is not value and number(script, part) is None for part in parts):
+        known = {part: found for part in parts if (found := number(script, part)) is not None}
+        turned = [part for part, found in known.items() if _is_degrees(found)]
+        if not turned or len(known) < len(parts):
             continue
-        first = number(script, turned[0]) or 0
+        first = known[turned[0]]
         yield Finding(
             RULE.id, "warning", script.span(value),
             f"`{path}` is in radians: {first:g} is {_turns(first)}. Write `math.radians({first:g})`.", path, (),

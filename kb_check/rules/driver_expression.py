@@ -26,7 +26,7 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.given import given_values
 from kb_check.literals import written
-from kb_check.made_here import attributes, callee_path, computes_names, named_words, once_bound
+from kb_check.made_here import assignments, callee_path, computes_names, named_words, once_bound
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -110,19 +110,16 @@ def _variables(script: Script) -> frozenset[str] | None:
 
 def _is_added(script: Script, value: ast.expr) -> bool:
     """Whether the driver that is given an expression is one that the script has added where it names it."""
-    for store in attributes(script).get("expression", ()):
-        row = script.analysis.resolutions.get(store)
-        statement = row.statement if row else None
-        if not isinstance(statement, ast.Assign) or statement.value is not value:
-            continue
-        owner: ast.expr = store.value
-        while isinstance(owner, (ast.Attribute, ast.Name)):
-            inner = owner.value if isinstance(owner, ast.Attribute) else once_bound(script, owner)
-            if inner is owner:
-                return False
-            owner = inner
-        return isinstance(owner, ast.Call) and callee_path(script, owner).endswith(".driver_add")
-    return False
+    statement = assignments(script).get(value)
+    if statement is None:
+        return False
+    owner = statement.targets[0]
+    while isinstance(owner, (ast.Attribute, ast.Name)):
+        inner = owner.value if isinstance(owner, ast.Attribute) else once_bound(script, owner)
+        if inner is owner:
+            return False
+        owner = inner
+    return isinstance(owner, ast.Call) and callee_path(script, owner).endswith(".driver_add")
 
 
 def _without_math(script: Script, text: ast.Constant) -> Fix | None:

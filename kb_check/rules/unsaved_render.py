@@ -18,7 +18,7 @@ from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls import calls, giving
 from kb_check.findings import Finding, Fix
-from kb_check.made_here import computes_names, keywords_and_texts, member_path, named_words
+from kb_check.made_here import attributes, computes_names, member_path, named_words
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -35,11 +35,11 @@ _OTHERWISE = frozenset(
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    if computes_names(script) or not _OTHERWISE.isdisjoint(named_words(script) | keywords_and_texts(script)):
+    if computes_names(script) or not _OTHERWISE.isdisjoint(named_words(script)):
         return
     if not any(
-        isinstance(row.node, ast.Attribute) and member_path(script, row.node) == _FILEPATH
-        for row in script.resolutions("store")
+        isinstance(node.ctx, ast.Store) and member_path(script, node) == _FILEPATH
+        for node in attributes(script).get("filepath", ())
     ):
         return
     for call in calls(script):

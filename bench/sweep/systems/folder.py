@@ -49,7 +49,7 @@ class FolderSystem:
         """Raises SystemNotReady."""
         if not self.source.is_dir():
             raise SystemNotReady(f"{self.source} is not a folder.")
-        names = {path.stem for path in FOLDER.glob("*.yaml")}
+        names = _scene_ids()
         if not any(entry.stem in names for entry in self.source.iterdir()):
             raise SystemNotReady(
                 f"{self.source} has no file or folder of any scene. A file is called as its scene's id, "
@@ -70,7 +70,7 @@ class FolderSystem:
         if not (self.source / f"{spec.id}.blend").is_file():
             own = self.source / spec.id
             return files_below(own) if own.is_dir() else []
-        others = {path.stem for path in FOLDER.glob("*.yaml")} - {spec.id}
+        others = _scene_ids() - {spec.id}
         return [
             path
             for entry in sorted(self.source.iterdir())
@@ -121,3 +121,8 @@ def _made_info(paths: Iterable[Path]) -> MadeInfo:
         return MadeInfo.model_validate_json(path.read_bytes()) if path is not None else MadeInfo()
     except (OSError, ValidationError):
         return MadeInfo()
+
+
+def _scene_ids() -> set[str]:
+    """The benchmark's scenes, whose specifications are not read for that."""
+    return {path.stem for path in FOLDER.glob("*.yaml")}

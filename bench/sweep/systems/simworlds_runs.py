@@ -37,7 +37,6 @@ TRANSCRIPTS = {
     "particle_D1_02": "confetti",
     "fluid_D1_01": "pour",  # cider from a keg into a glass, where the scene has milk from a jug into a bowl
 }
-KEYS = ("ANTHROPIC_API_KEY", "ANTHROPIC_AUTH_TOKEN")
 _OUTCOMES = ("done", "aborted", "failed", "stopped")
 _TOKENS = ("input", "output", "cache_read", "cache_write")
 
