@@ -146,6 +146,13 @@ def _plan_for(scene: Path, given: Path | None) -> ScenePlan | None:
 
     beside = scene.parent / PLAN_NAME
     if not beside.is_file() or not (scene.parent / NAME).is_file():
+        above = scene.absolute().parent.parent
+        if (above / PLAN_NAME).is_file() and (above / NAME).is_file():
+            click.echo(
+                "The file is checked without a plan. To check it against that of its run, which asks for what later "
+                f"stages build, too: --plan {above / PLAN_NAME}",
+                err=True,
+            )
         return None
     try:
         plan = _plan(beside)

@@ -105,10 +105,12 @@ def still_width(render: RenderSettings) -> int:
     return min(WIDTH, render.resolution[0])
 
 
-def still(name: str, frame: int | None, width: int | None = None) -> dict[str, Any]:
-    """The arguments of a still that is to be judged."""
+def still(
+    name: str, frame: int | None, width: int | None = None, seconds: float = _SECONDS
+) -> dict[str, Any]:
+    """The arguments of a still that is to be looked at, and may take so many seconds."""
     asked = {"kind": "still", "name": name, "width": width or WIDTH, "samples": SAMPLES, "denoise": True}
-    return {**asked, "time_budget": _SECONDS} | ({} if frame is None else {"frame": frame})
+    return {**asked, "time_budget": seconds} | ({} if frame is None else {"frame": frame})
 
 
 def _again(asked: dict[str, Any]) -> dict[str, Any]:

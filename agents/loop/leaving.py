@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _LOG = logging.getLogger(__name__)
 LATEST = "latest.png"
 _LAYOUT = "blender_scene_layout_preview"
+_SHOWING = 0.5  # of the time that is kept back, for a still
 
 
 def leave(run: Run) -> None:
@@ -35,7 +36,8 @@ def leave(run: Run) -> None:
             run.deliver(stage)
         elif run.is_changed and run.closed != START:
             run.load(stage, run.checkpoints / f"{run.closed}.blend")
-        shown = _shown(run.use(RUNNER, stage, RENDER, still("latest", None)))
+        seconds = max(1.0, run.leaving_seconds * _SHOWING)
+        shown = _shown(run.use(RUNNER, stage, RENDER, still("latest", None, seconds=seconds)))
         shown = shown or _shown(run.use(RUNNER, stage, _LAYOUT, {}))
         if shown:
             (run.root / LATEST).write_bytes(shown)

@@ -53,7 +53,12 @@ def after(state: RunState, event: events.Event) -> RunState:  # noqa: PLR0911, P
             minutes = event.render_minutes
             options = state.options if minutes is None else {**state.options, "render_minutes": minutes}
             limit = event.max_minutes
-            return replace(state, sessions=state.sessions + 1, ending=None, options=options, limit=limit)
+            # A film that gets other samples or another time is fitted anew.
+            is_fitted = minutes is None and event.render_samples is None
+            film = state.film if is_fitted or state.renderings else None
+            return replace(
+                state, sessions=state.sessions + 1, ending=None, options=options, limit=limit, film=film
+            )
         case events.PlanMade():
             return replace(state, plan=event.plan or state.plan, edit=event.edit or state.edit)
         case events.StageMoved():

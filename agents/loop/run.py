@@ -164,7 +164,13 @@ class Run:
         """Until the limit, without what is kept back for saving and showing the scene; None without a limit."""
         if (most := self.limits.max_minutes) is None:
             return None
-        return most * 60 - min(_LEAVING_SECONDS, most * 6) - (time.monotonic() - self._began)
+        return most * 60 - self.leaving_seconds - (time.monotonic() - self._began)
+
+    @property
+    def leaving_seconds(self) -> float:
+        """What is kept back of a session's limit for saving and showing what stands."""
+        most = self.limits.max_minutes
+        return _LEAVING_SECONDS if most is None else min(_LEAVING_SECONDS, most * 6)
 
     def time_left(self, stage: Stage, attempt: int) -> str:
         """A sentence for the roles; "" in a run without a limit. A session that resumes, and a replay, say the same

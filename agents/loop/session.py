@@ -28,7 +28,7 @@ from agents.roles.names import ROLES
 from simworlds.errors import UserError
 from simworlds.folder_lock import locked
 from simworlds.installed import own_version
-from simworlds.llm.errors import ModelError, OverBudget
+from simworlds.llm.errors import Misfit, ModelError, OverBudget
 from simworlds.llm.spending import Spending
 from simworlds.operating_system import SYSTEM
 from simworlds.own_command import own_command
@@ -45,6 +45,10 @@ if TYPE_CHECKING:
 
 _LOG = logging.getLogger(__name__)
 RESULTS = ("video.mp4", "still.png", "draft.mp4", LATEST)  # what a run shows, the best first
+_STRONGER = (
+    "'resume' asks it again. If that does not help, start a new run with a stronger model, for this role alone "
+    "(--role-model ROLE=NAME) or for all (--model NAME)."
+)
 How = Literal["done", "aborted", "stopped", "failed"]
 
 
@@ -57,6 +61,10 @@ class Watcher(Protocol):
 
     def saying(self, role: str, text: str) -> None:
         """The next words of a model, as they come."""
+        ...
+
+    def asking_again(self, role: str, why: str) -> None:
+        """A model gave no whole answer and is asked again: what was wrong, and when."""
         ...
 
     def progress(self, tool: str, done: float, total: float | None, text: str) -> None:
@@ -173,7 +181,8 @@ def _ended(run: Callable[[], Ended]) -> Ended:
     except Unusable as error:
         return Ended("failed", str(error), again=False)
     except (UserError, OSError) as error:
-        return Ended("failed", str(error))
+        helps = f" {_STRONGER}" if isinstance(error, Misfit) else ""
+        return Ended("failed", f"{error}{helps}")
 
 
 def _with_results(root: Path, ended: Ended) -> Ended:
@@ -274,7 +283,7 @@ def _retrying(session: RunSession) -> Callable[[Retry], object]:
     def tell(retry: Retry) -> None:
         if session.stop.event.is_set():
             raise Stopping("You asked the run to stop.")
-        session.watcher.saying(retry.ask.role, f"\n[{retry}]\n")
+        session.watcher.asking_again(retry.ask.role, str(retry))
 
     return tell
 

@@ -171,7 +171,12 @@ class Conversation:
         self, stage: str, shape: type[M], reader: AnswerReader[M], messages: tuple[Message, ...]
     ) -> M:
         ask, form = self._ask(stage, messages), form_of(shape)
-        found = ask_for(self._context, ask, reader, tries=_TRIES, on_text=self._say, form=form)
+        try:
+            found = ask_for(self._context, ask, reader, tries=_TRIES, on_text=self._say, form=form)
+        except Misfit as misfit:
+            role = self._role.replace("_", " ")
+            told = f"The {role} ({ask.model}) gave no answer of the requested form, {_TRIES} times. The last:"
+            raise Misfit([told, *misfit.problems], misfit.text) from misfit
         self._messages = (*self._messages, replace(found.turn, content=_words(found.turn)).message())
         return found.value
 

@@ -10,6 +10,7 @@ from agents.protocol.report.grouping import group_findings
 from agents.views.formatting import (
     describe_attempt,
     describe_film,
+    describe_frames,
     describe_source,
     format_cost,
     format_time,
@@ -57,7 +58,8 @@ def format_event(event: events.Event, run_state: RunState) -> list[str]:  # noqa
         case events.MendWeighed(is_time=False):
             return ["There is no time left to mend that and to render again"]
         case events.SceneRendered():
-            frames = f", {counted(event.frames, 'frame')}" if event.frames and event.frames > 1 else ""
+            several = event.frames if event.frames and event.frames > 1 else 0
+            frames = f", {describe_frames(several, run_state.film)}" if several else ""
             return [f"Rendered: {event.path}{frames}, {format_time(event.seconds)}"]
         case events.FinalReviewed(review=review) if review:
             verdict = "accepted" if review.verdict == "accept" else "needs a fix"

@@ -120,6 +120,13 @@ def describe_film(film: FilmFitted) -> str:
     return f"Film: {size}, {time}{f'; lowered: {plain(film.lowered)}' if film.lowered else ''}"
 
 
+def describe_frames(rendered: int, film: FilmFitted | None) -> str:
+    """How many frames a film has, and how many of them were rendered in its time."""
+    if film is None or rendered >= film.frames:
+        return counted(rendered, "frame")
+    return f"{counted(film.frames, 'frame')}, {rendered} of them rendered and the others repeated"
+
+
 def describe_attempt(attempt: Attempt) -> str:
     """What came of an attempt, in a few words."""
     found = attempt.verification

@@ -59,6 +59,9 @@ class RunView:
     def saying(self, role: str, text: str) -> None:
         """See Watcher."""
 
+    def asking_again(self, role: str, why: str) -> None:
+        """See Watcher."""
+
     def progress(self, tool: str, done: float, total: float | None, text: str) -> None:
         """See Watcher."""
 
@@ -87,6 +90,11 @@ class RunLog(RunView):
             super().take(event)
             for line in format_event(event, self.run_state):
                 self._write(line)
+
+    def asking_again(self, role: str, why: str) -> None:
+        """See Watcher."""
+        with self._lock:
+            self._write(f"  {role.replace('_', ' ')} has no answer: {why}", self._since)
 
     def progress(self, tool: str, done: float, total: float | None, text: str) -> None:
         """See Watcher. Not more often than every ten seconds."""
@@ -129,6 +137,11 @@ class RunScreen(LiveView, RunView):
         """See Watcher."""
         with self._lock:
             self._words[role] = (self._words.get(role, "") + text)[-_WORDS:]
+
+    def asking_again(self, role: str, why: str) -> None:
+        """See Watcher. Of a broken answer nothing is kept."""
+        with self._lock:
+            self._words[role] = f"{why}\n"
 
     def progress(self, tool: str, done: float, total: float | None, text: str) -> None:
         """See Watcher."""

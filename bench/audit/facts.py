@@ -25,13 +25,12 @@ class PointCache:
     """The cache of a cloth, soft body, particle system or rigid-body world. ``range`` is its own.
 
     ``frames``: how many it holds; ``expected``: how many a bake over its whole range holds (for an emitter, only while
-    there are particles). ``outdated``: Blender's mark, which every rigid-body world gets when a file is opened.
+    there are particles).
     """
 
     range: tuple[int, int]
     step: int
     is_baked: bool
-    outdated: bool
     frames: int
     expected: int
     where: CacheLocation

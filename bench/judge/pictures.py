@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from PIL import Image
 
 from bench.judge.errors import NotJudged
+from simworlds.counting import format_list
 from simworlds.llm.messages import Picture
 from simworlds.llm.picture_file import BadPicture, read_picture
 
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 
 MOST = 20
 """Frames per request; with more, providers accept only small pictures."""
+
+_NAMED = 3  # files that are not there
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +38,8 @@ class JudgedFrames:
 
 def read_frames(frames: Sequence[Path], *, static: bool) -> JudgedFrames:
     """Reads the frames of a film, or the one frame of a still. Raises NotJudged."""
+    if missing := [str(path) for path in frames if not path.exists()]:
+        raise NotJudged("frames", f"There is no file {format_list(missing, _NAMED)}.")
     if static and len(frames) != 1:
         raise NotJudged("frames", f"Give one frame for a still, not {len(frames)}.")
     if not static and not 2 <= len(frames) <= MOST:

@@ -28,7 +28,7 @@ _LONGEST = 300  # characters of a reason
 
 
 class SweepView:
-    """Prints a line for each scene that has ended; for logs."""
+    """Prints a line for each step that a scene comes to, and for each scene that has ended; for logs."""
 
     def __init__(self, stream: TextIO, total: int) -> None:
         self._stream = stream
@@ -36,9 +36,8 @@ class SweepView:
         self._count = 0
 
     def doing(self, task: SceneTask | None, what: str) -> None:
-        """Shows the progress of a task, on a terminal only; with None, of the sweep."""
-        if task is None:
-            self._write(what)
+        """Shows the progress of a task; with None, of the sweep."""
+        self._write(what if task is None else f"{task.spec.id:<16} {what} …")
 
     def done(self, done: FinishedTask) -> None:
         """Shows a task that has ended."""
@@ -74,8 +73,9 @@ class LiveSweepView(LiveView, SweepView):
 
     def doing(self, task: SceneTask | None, what: str) -> None:
         """See SweepView."""
-        super().doing(task, what)
-        if task is not None:
+        if task is None:
+            self._write(what)
+        else:
             self._doing[task.spec.id] = (what, time.monotonic())
 
     def done(self, done: FinishedTask) -> None:

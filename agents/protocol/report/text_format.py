@@ -65,17 +65,20 @@ def _format_number(value: float) -> str:
 
 
 def format_rule_ids(ids: Iterable[str], order: Sequence[str]) -> str:
-    """``C1–C6, V1``: three or more consecutive rules of a family become a range. ``order`` lists all rules."""
+    """``C1–C6, V1``: three or more rules of a family whose numbers follow each other become a range.
+
+    ``order`` lists all rules.
+    """
     places = {name: place for place, name in enumerate(order)}
     runs: list[list[str]] = []
     for name in sorted(set(ids), key=places.__getitem__):
-        if runs and places[name] == places[runs[-1][-1]] + 1 and _family(name) == _family(runs[-1][-1]):
+        if runs and _is_next(runs[-1][-1], name):
             runs[-1].append(name)
         else:
             runs.append([name])
     return ", ".join(f"{run[0]}–{run[-1]}" if len(run) > 2 else ", ".join(run) for run in runs)
 
 
-def _family(rule_id: str) -> str:
-    parts = _RULE_ID.match(rule_id)
-    return parts[1] if parts else rule_id
+def _is_next(before: str, rule_id: str) -> bool:
+    known = _RULE_ID.fullmatch(before)
+    return known is not None and rule_id == f"{known[1]}{int(known[2]) + 1}"

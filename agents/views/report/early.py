@@ -34,6 +34,10 @@ class ReportWriter:
         """See Watcher."""
         self.watcher.saying(role, text)
 
+    def asking_again(self, role: str, why: str) -> None:
+        """See Watcher."""
+        self.watcher.asking_again(role, why)
+
     def progress(self, tool: str, done: float, total: float | None, text: str) -> None:
         """See Watcher."""
         self.watcher.progress(tool, done, total, text)

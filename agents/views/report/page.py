@@ -92,6 +92,14 @@ class AttemptView:
 
 
 @dataclass(frozen=True, slots=True)
+class BeforeView:
+    """What was said and done before any stage: the planning."""
+
+    steps: tuple[StepView, ...]
+    pictures: tuple[GalleryPicture, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class StageView:
     """A stage, with its attempts and what it cost."""
 
@@ -128,6 +136,7 @@ def _render_page(run_state: RunState, run: Path, media: Media) -> str:
         source=formatting.describe_source(run_state),
         renderings=[_rendering(one, media) for one in run_state.renderings],
         result=_result(run_state, media),
+        before=_before_stages(run_state, gallery),
         stages=_stages(run_state, gallery),
         graph=draw_graph(run_state.plan) if run_state.plan else None,
         timeline=draw_timeline(run_state.plan) if run_state.plan else None,
@@ -138,6 +147,7 @@ def _render_page(run_state: RunState, run: Path, media: Media) -> str:
         by_kind=costs_by_role(run_state),
         roles=ROLES,
         counted=formatting.counted,
+        describe_frames=formatting.describe_frames,
         categories=CATEGORIES,
         rule_names=_RULE_NAMES,
         style=Markup(_own("style.css")),  # noqa: S704 - our own file
@@ -254,6 +264,12 @@ def _about(call: ToolCall) -> str:
         if isinstance(value, (str, list))
     )
     return shortened(", ".join(given), _ABOUT)
+
+
+def _before_stages(run_state: RunState, gallery: _Gallery) -> BeforeView:
+    pictures, numbers = gallery.of(run_state.steps)
+    steps = (_step(step, numbers) for step in run_state.steps)
+    return BeforeView(tuple(one for one in steps if one.is_tool or one.words or one.stop), pictures)
 
 
 def _stages(run_state: RunState, gallery: _Gallery) -> list[StageView]:

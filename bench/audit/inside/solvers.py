@@ -225,7 +225,6 @@ def point_cache(cache, owner, lived=None):
         "range": [first, last],
         "step": step,
         "is_baked": cache.is_baked,
-        "outdated": cache.is_outdated,
         "frames": _frames_held(cache, owner),
         "expected": max(0, held[1] - held[0]) // step + 1 if held[1] >= held[0] else 0,
         "where": "external" if cache.use_external else "disk" if cache.use_disk_cache else "blend",

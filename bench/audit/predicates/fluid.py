@@ -14,6 +14,7 @@ from bench.audit.predicates.shared_readings import (
     moved,
     number,
     parts_of,
+    range_seen,
     reaches,
     travel,
 )
@@ -195,9 +196,7 @@ def _cache_seen(obj: Object, domain: Domain, context: AuditContext) -> dict[str,
         "baked": list(cache.baked),
         "needed": list(parts_of(domain)),
         "on_disk": {part.name: [part.first, part.last, part.frames] for part in cache.parts},
-        "cache_range": list(cache.range),
-        "clip": list(context.scene.range),
-        "least_frames": context.least_frames,
+        **range_seen(cache.range, context),
         "found_elsewhere": cache.moved,
     }
 

@@ -56,7 +56,21 @@ def spans(frames: tuple[int, int], context: AuditContext, since: float | None = 
     """
     shared = common(frames, context.scene.range)
     before = max(0.0, since - context.scene.range[0]) if since is not None else 0.0
-    return shared >= COVERED * (max(context.scene.length, context.least_frames) - before)
+    return shared >= COVERED * (_wanted(context) - before)
+
+
+def _wanted(context: AuditContext) -> int:
+    return max(context.scene.length, context.least_frames)
+
+
+def range_seen(frames: tuple[int, int], context: AuditContext) -> dict[str, Any]:
+    """The range of a cache beside the frames that it is to cover, as it is reported."""
+    return {
+        "cache_range": list(frames),
+        "clip": list(context.scene.range),
+        "covers": common(frames, context.scene.range),
+        "of_frames": _wanted(context),
+    }
 
 
 def is_filled(cache: PointCache, context: AuditContext, since: float | None = None) -> bool:
@@ -69,12 +83,9 @@ def cache_seen(cache: PointCache, context: AuditContext) -> dict[str, Any]:
     """A point cache, as it is reported."""
     return {
         "baked": cache.is_baked,
-        "cache_range": list(cache.range),
-        "clip": list(context.scene.range),
-        "least_frames": context.least_frames,
+        **range_seen(cache.range, context),
         "frames": cache.frames,
         "frames_expected": cache.expected,
-        "outdated": cache.outdated,
         "where": cache.where,
     }
 

@@ -93,6 +93,9 @@ class Onlooker:
     def saying(self, role: str, text: str) -> None:
         self.heard.append((role, text))
 
+    def asking_again(self, role: str, why: str) -> None:
+        self.heard.append((role, why))
+
     def progress(self, tool: str, done: float, total: float | None, text: str) -> None:
         pass
 

@@ -96,6 +96,23 @@ def test_progress_is_told_now_and_then() -> None:
     assert [line.split()[0] for line in told] == ["00:10", "00:20", "00:30"]
 
 
+def test_log_and_screen_tell_that_a_model_is_asked_again() -> None:
+    stream = io.StringIO()
+    with RunLog(stream) as view:
+        view.asking_again("final_reviewer", "529: overloaded; asking again in 4 s")
+    assert (
+        stream.getvalue() == "00:00    final reviewer has no answer: 529: overloaded; asking again in 4 s\n"
+    )
+    console = Console(io.StringIO(), width=100, height=40, force_terminal=True, color_system=None)
+    with RunScreen(console) as screen:
+        screen.take(read_event({"type": "model.asked", "role": "planner", "n": 1}))
+        screen.saying("planner", "half an answ")
+        screen.asking_again("planner", "the stream broke; asking again in 4 s")
+        shown = drawn(screen.draw())
+    assert "asking again in 4 s" in shown
+    assert "half an answ" not in shown
+
+
 def test_log_continues_a_resumed_run() -> None:
     stream = io.StringIO()
     with RunLog(stream, until("stage.closed")) as view:
@@ -406,6 +423,13 @@ def test_a_film_says_what_was_lowered_and_how_long_it_takes() -> None:
     assert "lowered: 12 samples instead of 16" in told
     assert "about 10 min left" in told
     assert "about 5 min left" in drawn(run_summary(film_until(FITTED), frames=48))
+
+
+def test_a_film_with_another_time_is_fitted_anew() -> None:
+    same = film_until(FITTED, {"type": "sitting.began", "pid": 2})
+    assert same.film_seconds == FITTED["seconds"]
+    shorter = film_until(FITTED, {"type": "sitting.began", "pid": 2, "render_minutes": 1.0})
+    assert shorter.film_seconds == 60.0
 
 
 def test_the_rest_of_a_film_follows_from_the_frames_that_are_there() -> None:

@@ -252,6 +252,29 @@ def test_an_edit_tells_every_data_block_and_warns_of_those_outside(tmp_path: Pat
     assert "Object Cube, World World" in words(changes)
 
 
+def test_what_a_planner_said_is_there_also_where_no_plan_came_of_it(tmp_path: Path) -> None:
+    tape = Tape()
+    tape.began()
+    tape.says("planner", "", "I cannot plan this.")
+    tape.says("planner", "", "Nor now.")
+    tape.ended("failed", "The planner gave no answer of the requested form.")
+    planning = report_of(tape, tmp_path).select_one("#planning")
+    assert "I cannot plan this. Nor now." in words(planning)
+    assert planning
+    assert planning.select_one("details[open]")
+
+
+def test_a_film_says_how_many_of_its_frames_were_rendered(tmp_path: Path) -> None:
+    tape = Tape()
+    tape.began()
+    tape.add("plan", plan=domino_plan())
+    fitted = {"width": 640, "height": 360, "samples": 4, "seconds": 60.0, "minutes": 1.0}
+    tape.add("film.fitted", round=1, frames=64, **fitted)
+    tape.add("rendered", round=1, kind="animation", path="video.mp4", frames=47, samples=4, seconds=59.0)
+    told = words(report_of(tape, tmp_path).select_one("#result .rendering"))
+    assert "animation of 64 frames, 47 of them rendered and the others repeated, 4 samples" in told
+
+
 # Hostile journals
 
 

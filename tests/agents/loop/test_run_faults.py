@@ -154,7 +154,9 @@ def test_nonsense_without_end_fails_clearly_and_may_be_asked_for_again(
     api.answer = Team(plan="No plan today.")
     played = sit(tmp_path / "run")
     assert (played.ended.how, len(api.requests)) == ("failed", 4)
+    assert "The planner (claude-opus-5-5) gave no answer of the requested form, 4 times" in played.ended.why
     assert "There is no JSON in the answer." in played.ended.why
+    assert "--role-model" in played.ended.why
     api.answer = Team(plan=teams.REFUSED)
     again = go_on(tmp_path / "run")
     assert (again.ended.how, len(api.requests)) == ("failed", 5)

@@ -137,7 +137,7 @@ def test_the_limit_of_the_cost_is_respected(claude, frames):
         ([], "Give the frames"),
         (["a.png", "--scene", "cloth_D1_01", "--prompt", "x"], "not both"),
         (["a.png", "--scene", "cloth_D9_01"], "no scene 'cloth_D9_01'"),
-        (["a.png", "b.png", "--prompt", "x"], "a.png cannot be read"),
+        (["a.png", "b.png", "--prompt", "x"], "There is no file a.png, b.png"),
         (["--price", "cheap", "--dry-run"], "is not a price"),
     ],
 )

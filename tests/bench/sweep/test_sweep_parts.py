@@ -225,6 +225,18 @@ def test_screen_shows_progress_without_control_characters(tmp_path: Path) -> Non
     assert "\x07" not in said
 
 
+def test_log_tells_the_steps_of_each_scene(tmp_path: Path) -> None:
+    stream = io.StringIO()
+    task = SceneTask(spec_of(SCENE), FolderSystem(INFO, tmp_path), tmp_path)
+    with SweepView(stream, 1) as view:
+        view.doing(task, "taking frames")
+        view.done(FinishedTask(task, None, "crashed"))
+    assert stream.getvalue().splitlines() == [
+        "cloth_D1_01      taking frames …",
+        "[1/1] cloth_D1_01      could not be done: crashed",
+    ]
+
+
 def test_survives_a_closed_log_reader(tmp_path: Path) -> None:
     class Gone(io.StringIO):
         def write(self, text: str) -> int:

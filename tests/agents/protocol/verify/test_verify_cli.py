@@ -188,6 +188,13 @@ def test_the_plan_of_the_run_that_made_a_file_is_found(session: LiveSession, tmp
     (tmp_path / "plan.json").write_text(json.dumps(edit))
     done = verify(tmp_path, *words)
     assert (json.loads(done.stdout)["plan"], "Warning" in done.stderr) == ("", False)
+    (tmp_path / "plan.json").write_text(json.dumps(PLAN))
+    checkpoint = tmp_path / "checkpoints" / "modeling.blend"
+    checkpoint.parent.mkdir()
+    checkpoint.write_bytes((tmp_path / scene).read_bytes())
+    done = verify(tmp_path, "checkpoints/modeling.blend", *words[1:])
+    assert json.loads(done.stdout)["plan"] == ""
+    assert f"--plan {tmp_path / 'plan.json'}" in done.stderr
     (tmp_path / "plan.json").write_text(json.dumps(PLAN)[:-9])
     done = verify(tmp_path, *words)
     assert json.loads(done.stdout)["plan"] == ""

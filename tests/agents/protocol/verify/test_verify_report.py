@@ -160,6 +160,8 @@ def test_rules_that_follow_each_other_are_told_by_their_ends() -> None:
     order = ["C1", "C2", "C3", "C4", "G1", "G2", "V1"]
     assert format_rule_ids(["C1", "C2", "C3", "G1", "V1"], order) == "C1–C3, G1, V1"
     assert format_rule_ids(["C4", "G1", "G2"], order) == "C4, G1, G2"
+    with_a_gap = ["T1", "T2", "T3", "T5", "T6", "T7"]
+    assert format_rule_ids(with_a_gap, with_a_gap) == "T1–T3, T5–T7"
 
 
 @pytest.mark.parametrize(
