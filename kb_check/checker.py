@@ -11,12 +11,12 @@ from kb_build.flow.analysis import Analysis, analyse, analyse_files
 from kb_build.flow.api import Api
 from kb_build.flow.parse import too_long
 from kb_build.flow.symbols import MOST_KEPT, BaseSymbols
-from kb_check.ignores import UNUSED, Ignores
-from kb_check.known_names import KnownNames
-from kb_check.package import Package
+from kb_check.names.known import KnownNames
+from kb_check.registered.package import Package
 from kb_check.rule import all_rules, rule_named
-from kb_check.salvage import salvage
 from kb_check.script import Script
+from kb_check.text.ignores import UNUSED, Ignores
+from kb_check.text.salvage import salvage
 from kb_serve.reader import BaseReader
 from simworlds.releases import version_key
 

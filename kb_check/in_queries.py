@@ -14,8 +14,8 @@ from kb_build.flow.parse import parsed
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.paths import last_name
 from kb_check.beside import checker_beside
-from kb_check.source import split_lines
 from kb_check.summary import mended
+from kb_check.text.source import split_lines
 from kb_serve.reader import UNLIMITED
 from kb_serve.recognise.code.wrong_values import NO_VALUE
 from kb_serve.recognise.names.corrections import is_misspelling

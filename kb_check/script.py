@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, TypeVar, cast
 from kb_build.flow.trees import walk
 from kb_build.flow.types import Instance
 from kb_check.findings import Edit, Span
-from kb_check.raised import raised_by
-from kb_check.source import split_lines
+from kb_check.running.raised import raised_by
+from kb_check.text.source import split_lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterator
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from kb_build.flow.analysis import Analysis
     from kb_build.flow.api import Api
     from kb_build.flow.types import Resolution, ResolutionKind, Type
-    from kb_check.known_names import KnownNames
-    from kb_check.package import Package
+    from kb_check.names.known import KnownNames
+    from kb_check.registered.package import Package
 
 # The kinds of parts of a script that may stand for what an add-on registers.
 REGISTERED: frozenset[ResolutionKind] = frozenset({"attribute", "store", "text", "button", "name"})

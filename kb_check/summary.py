@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from typing import TYPE_CHECKING
 
-from kb_check.source import split_lines
+from kb_check.text.source import split_lines
 from kb_serve.answer.budget import clip, tokens
 from simworlds.counting import counted
 

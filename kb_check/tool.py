@@ -101,9 +101,9 @@ def is_quick(arguments: dict[str, Any] | None) -> bool:
 
 def _checked(base: KnowledgeBase, code: str, max_tokens: int, note: str) -> CheckReply:
     from kb_check.beside import checker_beside  # noqa: PLC0415 - loaded by the first check
-    from kb_check.run_reach import RunReach, may_bring_names  # noqa: PLC0415
-    from kb_check.source import split_lines  # noqa: PLC0415
+    from kb_check.running.reach import RunReach, may_bring_names  # noqa: PLC0415
     from kb_check.summary import mended, ranked, summarize  # noqa: PLC0415
+    from kb_check.text.source import split_lines  # noqa: PLC0415
     from kb_serve.answer.budget import tokens  # noqa: PLC0415 - loaded with the base
 
     checker = checker_beside(base.reader)

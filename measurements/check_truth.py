@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
 from kb_check.checker import Checker
-from kb_check.fixes import is_fixable
-from kb_check.run import MOST_ROUNDS
-from kb_check.text_edits import Text, apart
+from kb_check.command.run import MOST_ROUNDS
+from kb_check.text.edits import Text, apart
+from kb_check.text.fixes import is_fixable
 from measurements.report import ReportPart, TargetFigure
 from measurements.scripts.truth import FOLDER, SETS, Truth, read_truth, run
 from measurements.setting import say

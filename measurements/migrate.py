@@ -27,8 +27,8 @@ from kb_build.usage.scripts import read_script
 from kb_check.checker import Checker
 from kb_check.migrate.plan import Migrator
 from kb_check.migrate.trial import run_in, runtime_at_hand
-from kb_check.package import paths_in_package
-from kb_check.run_reach import RunReach
+from kb_check.registered.package import paths_in_package
+from kb_check.running.reach import RunReach
 from measurements.blender_scripts import scripts_folder
 from measurements.report import ReportPart, TargetFigure
 from measurements.setting import say

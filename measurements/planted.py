@@ -24,7 +24,7 @@ from bench.markdown_tables import Table
 from kb_build.flow.symbols import BaseSymbols
 from kb_build.usage.scripts import blender_scripts, read_script
 from kb_check.checker import Checker
-from kb_check.salvage import parses
+from kb_check.text.salvage import parses
 from measurements.blender_scripts import scripts_folder, why_none
 from measurements.planted_places import Place, Places
 from measurements.report import ReportPart, TargetFigure

@@ -23,9 +23,9 @@ from typing import TYPE_CHECKING, Any
 from bench.markdown_tables import Table
 from kb_build.usage.scripts import read_script
 from kb_check.checker import Checker
-from kb_check.files import find_files
-from kb_check.project import check_group
-from kb_check.run import load
+from kb_check.command.files import find_files
+from kb_check.command.project import check_group
+from kb_check.command.run import load
 from kb_check.stubs.package import write_folder
 from measurements.blender_scripts import scripts_folder, why_none
 from measurements.check_blender import broken_rows, proof_of

@@ -32,7 +32,7 @@ class _Command(NamedTuple):
 
 _COMMANDS = {
     "bench": _Command("bench.commands.bench", "bench", "Score scenes of any system: 4DBuildBench."),
-    "check": _Command("kb_check.cli", "check", "Check Python code against Blender's API, unrun."),
+    "check": _Command("kb_check.command.cli", "check", "Check Python code against Blender's API, unrun."),
     "demo": _Command("agents.commands.runs", "demo", "Play a transcript in a real Blender; no key needed."),
     "docs": _Command("kb_serve.cli", "docs", "Query the knowledge base."),
     "doctor": _Command("agents.commands.doctor", "doctor", "Check whether a live Blender can run here."),
@@ -47,13 +47,13 @@ _COMMANDS = {
     "mcp": _Command("agents.commands.mcp", "mcp", "Serve a live Blender and its documentation over MCP."),
     "replay": _Command("agents.commands.runs", "replay", "Replay a run's recorded answers as a new run."),
     "migrate": _Command(
-        "kb_check.migrate_cli", "migrate", "Rewrite scripts and add-ons for another Blender."
+        "kb_check.migrate.cli", "migrate", "Rewrite scripts and add-ons for another Blender."
     ),
     "resume": _Command("agents.commands.runs", "resume", "Continue a run."),
     "runs": _Command("agents.commands.runs", "runs", "List the runs."),
     "serve": _Command("kb_serve.cli", "serve", "Serve blender_docs and blender_check over MCP."),
     "show": _Command("agents.commands.runs", "show", "Show the state of a run."),
-    "stubs": _Command("kb_check.stubs_cli", "stubs", "Write typed stubs for type checkers and editors."),
+    "stubs": _Command("kb_check.stubs.cli", "stubs", "Write typed stubs for type checkers and editors."),
     "verify": _Command(
         "agents.commands.verify", "verify", "Check a .blend by the scene protocol and a plan."
     ),

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_check.checker import Checker
+from kb_check.command.versions import base_files
 from kb_check.migrate.kept_version import KeptVersion
 from kb_check.migrate.place import version_of
-from kb_check.versions import base_files
 from kb_serve.bases import Bases
 from kb_serve.reader import BaseReader
 from simworlds.errors import UserError

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from kb_check.migrate.change import Change, Version
     from kb_check.migrate.place import Place
-    from kb_check.text_edits import Text
+    from kb_check.text.edits import Text
 
 _BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")
 _OPENS = (

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import children, walk
 from kb_build.flow.types import Instance, members, without_none
-from kb_check.bodies import bodies_of
 from kb_check.findings import Edit, Span
 from kb_check.migrate.change import Change, Version
+from kb_check.syntax.bodies import bodies_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

@@ -15,9 +15,9 @@ from kb_check.migrate.place import Place, version_of
 from kb_check.migrate.rewrite import all_rewrites
 from kb_check.migrate.rewrites.matrix_products import BEFORE_PRODUCTS
 from kb_check.migrate.version_tests import reaches
-from kb_check.package import paths_in_package
-from kb_check.salvage import is_valid
-from kb_check.text_edits import Text, apart, largest
+from kb_check.registered.package import paths_in_package
+from kb_check.text.edits import Text, apart, largest
+from kb_check.text.salvage import is_valid
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from kb_check.findings import Edit
     from kb_check.migrate.change import Version
     from kb_check.migrate.kept_version import KeptVersion
-    from kb_check.package import Package
+    from kb_check.registered.package import Package
 
 _ROUNDS = 40
 _TOLD = 160

@@ -27,11 +27,11 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_check.edit_bones import EDIT_BONE, Bones, edited_outside, names_edit_bones, surely_run
 from kb_check.findings import Finding
-from kb_check.made_here import bodies
+from kb_check.modes.edit_bones import EDIT_BONE, Bones, edited_outside, names_edit_bones, surely_run
 from kb_check.rule import Rule
-from kb_check.tried import is_tried
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import bodies
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -25,20 +25,20 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.trees import called_name, children
 from kb_build.symbols.api_names import TYPES
-from kb_check.bodies import bodies_of
-from kb_check.calls import callee_of
+from kb_check.calls.sites import callee_of
 from kb_check.findings import Finding, Fix
-from kb_check.literals import set_of
-from kb_check.made_here import callee_path
-from kb_check.own_classes import FunctionDefinition, own_classes
+from kb_check.registered.classes import FunctionDefinition, own_classes
 from kb_check.rule import Rule
+from kb_check.scene.made_here import callee_path
 from kb_check.script import once_per_script
+from kb_check.syntax.bodies import bodies_of
+from kb_check.syntax.literals import set_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.symbols.records import Symbol
-    from kb_check.own_classes import OwnClass
+    from kb_check.registered.classes import OwnClass
     from kb_check.script import Script
 
 _Scope = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda

@@ -25,8 +25,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.findings import Edit, Finding, Fix
-from kb_check.own_classes import FunctionDefinition, own_classes
-from kb_check.registered_types import FEWEST_ARGUMENTS
+from kb_check.registered.blender_types import FEWEST_ARGUMENTS
+from kb_check.registered.classes import FunctionDefinition, own_classes
 from kb_check.rule import Rule
 from simworlds.counting import counted
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.symbols.records import Symbol
-    from kb_check.own_classes import OwnClass
+    from kb_check.registered.classes import OwnClass
     from kb_check.script import Script
 
 _PASSES_TO_INIT = (4, 4)

@@ -41,12 +41,12 @@ from kb_build.symbols.records import (
     ENDS_WITHOUT,
     UNSET_BY,
 )
-from kb_check.asked_for_none import tested_names
-from kb_check.calls import CallSite, calls
-from kb_check.emptied import EMPTYING, is_emptied_before
+from kb_check.calls.sites import CallSite, calls
 from kb_check.findings import Edit, Finding, Fix
-from kb_check.given import Given, given_values
-from kb_check.made_here import (
+from kb_check.rule import Rule
+from kb_check.running.asked_for_none import tested_names
+from kb_check.scene.emptied import EMPTYING, is_emptied_before
+from kb_check.scene.made_here import (
     assignments,
     bindings,
     called_operators,
@@ -55,9 +55,9 @@ from kb_check.made_here import (
     knows_all,
     makers,
 )
-from kb_check.opening import OPENING
-from kb_check.rule import Rule
+from kb_check.scene.opening import OPENING
 from kb_check.script import once_per_script
+from kb_check.values.given import Given, given_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -26,13 +26,13 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Collection, Instance
 from kb_build.symbols.api_names import TYPES as T
-from kb_check.calls import calls
+from kb_check.calls.sites import calls
 from kb_check.findings import Edit, Finding, Fix
-from kb_check.made_here import computes_names, texts_but_keys
-from kb_check.raised import LACKS_KEY
 from kb_check.rule import Rule
+from kb_check.running.raised import LACKS_KEY
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import computes_names, texts_but_keys
 from kb_check.script import once_per_script
-from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -17,16 +17,16 @@ import math
 from typing import TYPE_CHECKING
 
 from kb_check.findings import Edit, Finding, Fix
-from kb_check.given import given_values
-from kb_check.literals import items, number
-from kb_check.made_here import callee_path
 from kb_check.rule import Rule
+from kb_check.scene.made_here import callee_path
+from kb_check.syntax.literals import items, number
+from kb_check.values.given import given_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_check.given import Taker
     from kb_check.script import Script
+    from kb_check.values.given import Taker
 
 _EULER = "mathutils.Euler"
 _LEAST, _STEP = 10, 5

@@ -24,10 +24,10 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.findings import Edit, Finding, Fix
-from kb_check.given import given_values
-from kb_check.literals import written
-from kb_check.made_here import assignments, callee_path, computes_names, named_words, once_bound
 from kb_check.rule import Rule
+from kb_check.scene.made_here import assignments, callee_path, computes_names, named_words, once_bound
+from kb_check.syntax.literals import written
+from kb_check.values.given import given_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

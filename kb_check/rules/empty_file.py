@@ -25,10 +25,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES as T
-from kb_check.background import is_called_by_others, lines_of_others
-from kb_check.emptied import empties_only, is_emptied_before
 from kb_check.findings import Finding
-from kb_check.made_here import (
+from kb_check.rule import Rule
+from kb_check.running.background import is_called_by_others, lines_of_others
+from kb_check.running.read_pointers import read_from
+from kb_check.running.tried import is_tried
+from kb_check.scene.emptied import empties_only, is_emptied_before
+from kb_check.scene.made_here import (
     asked_names,
     calls_only,
     keywords_and_texts,
@@ -38,17 +41,14 @@ from kb_check.made_here import (
     stored_names,
     texts_but_keys,
 )
-from kb_check.read_pointers import read_from
-from kb_check.rule import Rule
 from kb_check.script import once_for_each
-from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Iterator
 
     from kb_build.flow.types import Resolution
     from kb_check.findings import Severity
-    from kb_check.read_pointers import PointerRead
+    from kb_check.running.read_pointers import PointerRead
     from kb_check.script import Script
 
 # Operators that fill none of what is looked for; those that are called read an empty file.

@@ -30,8 +30,12 @@ from kb_build.index.analysis import stem, words
 from kb_build.symbols.api_names import ID, OBJECT, OPERATORS
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import empty_when_new, fillers
+from kb_check.calls.not_ensured import ensuring, not_ensured
 from kb_check.findings import Finding
-from kb_check.made_here import (
+from kb_check.rule import Rule
+from kb_check.running.read_pointers import read_pointer
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import (
     asked_names,
     bindings,
     called_operators,
@@ -49,12 +53,8 @@ from kb_check.made_here import (
     stage,
     stored_names,
 )
-from kb_check.not_ensured import ensuring, not_ensured
-from kb_check.other_modes import set_otherwise
-from kb_check.read_pointers import read_pointer
-from kb_check.rule import Rule
+from kb_check.scene.set_otherwise import set_otherwise
 from kb_check.script import once_for_each, once_per_script
-from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

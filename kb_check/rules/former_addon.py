@@ -16,10 +16,10 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import ADDONS
-from kb_check.calls import calls
+from kb_check.calls.sites import calls
 from kb_check.findings import Finding
 from kb_check.rule import Rule
-from kb_check.tried import is_tried
+from kb_check.running.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

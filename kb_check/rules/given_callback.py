@@ -52,13 +52,13 @@ from kb_build.flow.types import (
 from kb_build.index.analysis import split_arguments
 from kb_build.symbols.api_names import HANDLERS
 from kb_build.symbols.handlers import NUMBERS_OF_ARGUMENTS
-from kb_check.calls import calls
+from kb_check.calls.sites import calls
 from kb_check.findings import Edit, Finding, Fix, Span
-from kb_check.handler_lists import handler_list
-from kb_check.made_here import once_bound
-from kb_check.misfits import describe
+from kb_check.registered.handler_lists import handler_list
 from kb_check.rule import Rule
-from kb_check.tried import is_tried
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import once_bound
+from kb_check.values.misfits import describe
 from simworlds.counting import counted
 
 if TYPE_CHECKING:

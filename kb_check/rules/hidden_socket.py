@@ -33,14 +33,14 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.lines import shown_when
 from kb_check.findings import Finding
-from kb_check.hidden_links import hidden_link
-from kb_check.made_here import is_new, knows_all, named_words
+from kb_check.nodes.hidden_links import hidden_link
+from kb_check.nodes.shown_sockets import hidden_by_settings, index_beyond
+from kb_check.nodes.socket_modes import deciding, is_by_others, is_internal
+from kb_check.nodes.zone_pairing import unpaired
 from kb_check.rule import Rule
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import is_new, knows_all, named_words
 from kb_check.script import once_per_script
-from kb_check.shown_sockets import hidden_by_settings, index_beyond
-from kb_check.socket_modes import deciding, is_by_others, is_internal
-from kb_check.tried import is_tried
-from kb_check.zone_pairing import unpaired
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -33,14 +33,14 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.findings import Finding, Fix
-from kb_check.own_classes import own_classes
-from kb_check.registered_types import needs
+from kb_check.registered.blender_types import needs
+from kb_check.registered.classes import own_classes
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_check.own_classes import OwnClass
+    from kb_check.registered.classes import OwnClass
     from kb_check.script import Script
 
 _PANEL = f"{T}Panel"

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Instance, literal_text
 from kb_check.findings import Finding
-from kb_check.group_inputs import named_inputs
+from kb_check.nodes.group_inputs import named_inputs
 from kb_check.rule import Rule
 from kb_serve.recognise.resolving.subscripts import NODES_MODIFIER, CustomProperties
 

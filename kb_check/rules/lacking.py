@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.findings import Finding
-from kb_check.foreign_addons import may_register
-from kb_check.former_values import new_value
+from kb_check.names.former_values import new_value
+from kb_check.registered.foreign_addons import may_register
 from kb_check.rules.renaming import renaming
 from kb_check.script import REGISTERED
 
 if TYPE_CHECKING:
     from kb_build.flow.types import Resolution, ResolutionKind
     from kb_check.findings import Severity
-    from kb_check.known_names import Lacking
+    from kb_check.names.known import Lacking
     from kb_check.script import Script
 
 # How the path of what is missing is written from its owner and its name, where that is not with a dot.

@@ -35,8 +35,10 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.object_data import OBJECT_DATA, data_class
 from kb_build.symbols.records import NAMES_PART
 from kb_check.findings import Finding
-from kb_check.given import assigned
-from kb_check.made_here import (
+from kb_check.rule import Rule
+from kb_check.running.raised import REFUSES
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import (
     OBJECTS_NEW,
     callee_path,
     has_new_data,
@@ -46,10 +48,8 @@ from kb_check.made_here import (
     once_bound,
     places,
 )
-from kb_check.raised import REFUSES
-from kb_check.rule import Rule
 from kb_check.script import once_per_script
-from kb_check.tried import is_tried
+from kb_check.values.given import assigned
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -20,9 +20,12 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import walk
 from kb_build.symbols.api_names import TYPES as T
-from kb_check.edit_bones import bound_in, names_of_others
 from kb_check.findings import Finding
-from kb_check.made_here import (
+from kb_check.modes.edit_bones import bound_in, names_of_others
+from kb_check.modes.keeping import is_harmless
+from kb_check.rule import Rule
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import (
     alias,
     attributes,
     bodies,
@@ -31,9 +34,6 @@ from kb_check.made_here import (
     making_operator,
     reads_active,
 )
-from kb_check.mode_keeping import is_harmless
-from kb_check.rule import Rule
-from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -20,12 +20,12 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import NONE, UNKNOWN, Instance, Sequence, Tuple, Type, members
 from kb_check.findings import Finding
-from kb_check.handler_lists import handler_list
-from kb_check.made_here import once_bound, words_in_texts
-from kb_check.misfits import describe
-from kb_check.raised import LACKS
+from kb_check.registered.handler_lists import handler_list
 from kb_check.rule import Rule
-from kb_check.tried import is_tried
+from kb_check.running.raised import LACKS
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import once_bound, words_in_texts
+from kb_check.values.misfits import describe
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -26,17 +26,17 @@ from typing import TYPE_CHECKING
 from kb_build.flow.trees import walk
 from kb_build.flow.types import Function
 from kb_check.findings import Edit, Finding, Fix, Span
-from kb_check.literals import times_bound
-from kb_check.made_here import callee_path
-from kb_check.own_classes import own_classes
-from kb_check.registered_types import MAKE_PROPERTIES
+from kb_check.registered.blender_types import MAKE_PROPERTIES
+from kb_check.registered.classes import own_classes
 from kb_check.rule import Rule
+from kb_check.scene.made_here import callee_path
+from kb_check.syntax.literals import times_bound
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_check.findings import Severity
-    from kb_check.own_classes import OwnClass
+    from kb_check.registered.classes import OwnClass
     from kb_check.script import Script
 
 _PROPS = "bpy.props."

@@ -16,15 +16,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import GROUPS
-from kb_check.calls import calls, calls_of_several
+from kb_check.calls.sites import calls, calls_of_several
 from kb_check.findings import Finding
-from kb_check.literals import number
 from kb_check.rule import Rule
+from kb_check.syntax.literals import number
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_check.calls import CallSite
+    from kb_check.calls.sites import CallSite
     from kb_check.script import Script
 
 # Modules whose reference shows one of several signatures, and what bpy.props fills in when a class is registered.

@@ -18,10 +18,14 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Instance
 from kb_build.symbols.api_names import TYPES as T
-from kb_check.calls import calls, calls_by_node
-from kb_check.edit_bones import bound_in, names_in, surely_run
+from kb_check.calls.sites import calls, calls_by_node
 from kb_check.findings import Finding
-from kb_check.made_here import (
+from kb_check.modes.edit_bones import bound_in, names_in, surely_run
+from kb_check.modes.keeping import is_harmless, run_in
+from kb_check.rule import Rule
+from kb_check.running.raised import LACKS_KEY
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import (
     alias,
     bodies,
     callee_path,
@@ -32,11 +36,7 @@ from kb_check.made_here import (
     member_path,
     texts_but_keys,
 )
-from kb_check.mode_keeping import is_harmless, run_in
-from kb_check.raised import LACKS_KEY
-from kb_check.rule import Rule
 from kb_check.script import once_per_script
-from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

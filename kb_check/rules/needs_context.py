@@ -29,18 +29,18 @@ from kb_build.flow.types import Builtin, Mapping, Operator
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import operator_areas, operator_given
 from kb_build.symbols.lines import area_text
-from kb_check.background import is_called_by_others, lines_of_others
-from kb_check.calls import calls
+from kb_check.calls.sites import calls
 from kb_check.findings import Finding
-from kb_check.made_here import alias, asked_names
-from kb_check.read_pointers import read_from
 from kb_check.rule import Rule
+from kb_check.running.background import is_called_by_others, lines_of_others
+from kb_check.running.read_pointers import read_from
+from kb_check.scene.made_here import alias, asked_names
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.symbols.records import Symbol
-    from kb_check.read_pointers import PointerRead
+    from kb_check.running.read_pointers import PointerRead
     from kb_check.script import Script
 
 

@@ -31,10 +31,10 @@ from typing import TYPE_CHECKING
 from kb_build.flow.types import UNKNOWN, Instance, LocalInstance, members
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.findings import Edit, Finding, Fix
-from kb_check.group_inputs import input_now
-from kb_check.own_classes import own_classes
+from kb_check.nodes.group_inputs import input_now
+from kb_check.registered.classes import own_classes
 from kb_check.rule import Rule
-from kb_check.tried import is_tried
+from kb_check.running.tried import is_tried
 from kb_serve.recognise.resolving.subscripts import (
     INPUT_KEY,
     NODES_MODIFIER,
@@ -45,7 +45,7 @@ from kb_serve.recognise.resolving.subscripts import (
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_check.own_classes import OwnClass
+    from kb_check.registered.classes import OwnClass
     from kb_check.script import Script
 
 _SINCE = 5, 0

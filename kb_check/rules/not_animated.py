@@ -11,7 +11,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES as T
-from kb_check.calls import calls
+from kb_check.calls.sites import calls
 from kb_check.findings import Finding
 from kb_check.rule import Rule
 

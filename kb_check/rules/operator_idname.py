@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.findings import Finding, Fix
-from kb_check.own_classes import own_classes
+from kb_check.registered.classes import own_classes
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:

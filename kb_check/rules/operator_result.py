@@ -17,13 +17,13 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import made_by
-from kb_check.calls import calls_by_node
+from kb_check.calls.sites import calls_by_node
 from kb_check.findings import Edit, Finding, Fix, Span
-from kb_check.literals import times_bound
-from kb_check.made_here import assignments, once_bound
-from kb_check.raised import LACKS
 from kb_check.rule import Rule
-from kb_check.tried import is_tried
+from kb_check.running.raised import LACKS
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import assignments, once_bound
+from kb_check.syntax.literals import times_bound
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

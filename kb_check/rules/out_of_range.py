@@ -20,16 +20,16 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.records import STOPS, UNBOUNDED
 from kb_check.findings import Edit, Finding, Fix
-from kb_check.given import given_values
-from kb_check.literals import items, number
 from kb_check.rule import Rule
+from kb_check.syntax.literals import items, number
+from kb_check.values.given import given_values
 
 if TYPE_CHECKING:
     import ast
     from collections.abc import Iterator
 
-    from kb_check.given import Taker
     from kb_check.script import Script
+    from kb_check.values.given import Taker
 
 _LONGEST_INT = 2**31
 _ROUNDING = 1e-5  # of the limits, which Blender keeps as 32-bit floats

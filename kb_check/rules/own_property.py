@@ -28,19 +28,19 @@ from typing import TYPE_CHECKING
 from kb_build.flow.core import ANY
 from kb_build.flow.types import UNKNOWN, Instance, LocalInstance, literal_texts, members
 from kb_check.findings import Finding, Fix
-from kb_check.known_names import listed
-from kb_check.made_here import attributes
-from kb_check.own_properties import LAYOUT, own_properties, uses
+from kb_check.names.known import listed
+from kb_check.registered.properties import LAYOUT, own_properties, uses
 from kb_check.rule import Rule
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import attributes
 from kb_check.script import once_per_script
-from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_check.findings import Severity
-    from kb_check.own_declarations import OwnProperty
-    from kb_check.own_properties import OwnProperties, Use
+    from kb_check.registered.declarations import OwnProperty
+    from kb_check.registered.properties import OwnProperties, Use
     from kb_check.script import Script
 
 _GROUP = "bpy.types.PropertyGroup"

@@ -39,20 +39,20 @@ from kb_build.flow.types import (
     literal_text,
     members,
 )
-from kb_check.brackets import bracketed
-from kb_check.calls import calls
-from kb_check.conversions import misfit
+from kb_check.calls.sites import calls
 from kb_check.findings import Edit, Finding, Fix
-from kb_check.given import parameter_taker
-from kb_check.made_here import bindings
 from kb_check.rule import Rule
+from kb_check.scene.made_here import bindings
+from kb_check.text.brackets import bracketed
+from kb_check.values.conversions import misfit
+from kb_check.values.given import parameter_taker
 from simworlds.counting import counted
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.symbols.records import Parameter
-    from kb_check.calls import Callee, CallSite
+    from kb_check.calls.sites import Callee, CallSite
     from kb_check.script import Script
 
 _EXECUTION_CONTEXTS = frozenset(

@@ -20,10 +20,10 @@ from typing import TYPE_CHECKING
 from kb_build.flow.types import UNKNOWN, ClassObject, Instance, members
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.findings import Finding, Fix
-from kb_check.made_here import callee_path
 from kb_check.rule import Rule
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import callee_path
 from kb_check.script import once_per_script
-from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -27,21 +27,21 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.symbols.api_names import ID, OBJECT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import last_name
-from kb_check.calls import calls
-from kb_check.data_paths import follow, item, size
+from kb_check.calls.sites import calls
 from kb_check.findings import Edit, Finding, Fix
-from kb_check.literals import number, written
 from kb_check.rule import Rule
+from kb_check.running.tried import is_tried
 from kb_check.script import once_per_script
-from kb_check.tried import is_tried
+from kb_check.syntax.literals import number, written
+from kb_check.values.data_paths import follow, item, size
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.symbols.records import Symbol
-    from kb_check.calls import CallSite
-    from kb_check.data_paths import Followed
+    from kb_check.calls.sites import CallSite
     from kb_check.script import Script
+    from kb_check.values.data_paths import Followed
 
 _DRIVING = f"{T}bpy_struct.driver_add"  # it takes no keywords
 _CALLS = frozenset({f"{T}bpy_struct.keyframe_insert", f"{T}bpy_struct.keyframe_delete", _DRIVING})

@@ -35,11 +35,11 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import PRODUCTS
 from kb_build.flow.types import Instance
-from kb_check.calls import nothing_from, other_way
+from kb_check.calls.sites import nothing_from, other_way
 from kb_check.findings import Edit, Finding, Fix, Span
-from kb_check.mathutils_sizes import VECTOR
 from kb_check.rule import Rule
-from kb_check.tried import is_tried
+from kb_check.running.tried import is_tried
+from kb_check.values.mathutils_sizes import VECTOR
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -37,9 +37,13 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import usual_default
 from kb_build.symbols.paths import last_name
 from kb_build.symbols.taken import NEVER, Setting
-from kb_check.calls import calls_not_ready_for
+from kb_check.calls.sites import calls_not_ready_for
 from kb_check.findings import Finding, Fix
-from kb_check.made_here import (
+from kb_check.nodes.trees import is_refused_in, tree_of
+from kb_check.rule import Rule
+from kb_check.running.raised import REFUSES_ENUM
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import (
     alias,
     bindings,
     called_operators,
@@ -50,13 +54,9 @@ from kb_check.made_here import (
     member_path,
     named_words,
 )
-from kb_check.node_trees import is_refused_in, tree_of
-from kb_check.opening import OPENING
-from kb_check.raised import REFUSES_ENUM
-from kb_check.rule import Rule
+from kb_check.scene.opening import OPENING
+from kb_check.scene.settings_before import made_just_before, set_before
 from kb_check.script import once_per_script
-from kb_check.settings_before import made_just_before, set_before
-from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator

@@ -28,21 +28,21 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES as T
-from kb_check.computing import NAMESPACES, RUNNING, computing
 from kb_check.findings import Finding
-from kb_check.literals import times_bound, written
-from kb_check.made_here import callee_path, named_words
-from kb_check.own_classes import own_classes
-from kb_check.registrations import registrations, statements
+from kb_check.registered.classes import own_classes
+from kb_check.registered.order import registrations, statements
 from kb_check.rule import Rule
+from kb_check.running.computing import NAMESPACES, RUNNING, computing
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import callee_path, named_words
 from kb_check.script import once_per_script
-from kb_check.tried import is_tried
+from kb_check.syntax.literals import times_bound, written
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_check.own_classes import OwnClass
-    from kb_check.registrations import Registration
+    from kb_check.registered.classes import OwnClass
+    from kb_check.registered.order import Registration
     from kb_check.script import Script
 
 _PROPS = "bpy.props."

@@ -14,20 +14,20 @@ from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, Module, Plain, members
 from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.paths import item_of, split_path
-from kb_check.conversions import misfit
 from kb_check.findings import Edit, Fix, Span
-from kb_check.given import assigned, property_taker
-from kb_check.literals import written
-from kb_check.made_here import bindings
+from kb_check.names.uses import are_refused
+from kb_check.scene.made_here import bindings
 from kb_check.script import once_per_script
-from kb_check.uses import are_refused
+from kb_check.syntax.literals import written
+from kb_check.values.conversions import misfit
+from kb_check.values.given import assigned, property_taker
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.flow.types import Resolution
     from kb_build.symbols.records import Parameter, Symbol
-    from kb_check.known_names import Lacking
+    from kb_check.names.known import Lacking
     from kb_check.script import Script
 
 _TAKES = {

@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.flags import usual_default
 from kb_build.symbols.lines import switches
 from kb_check.findings import Finding
-from kb_check.made_here import computes_names, is_new, named_words
 from kb_check.rule import Rule
+from kb_check.scene.made_here import computes_names, is_new, named_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 from kb_check.findings import Finding, Span
 from kb_check.rule import Rule
-from kb_check.salvage import looks_like_python_2
+from kb_check.text.salvage import looks_like_python_2
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -17,10 +17,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.paths import argument_of
-from kb_check.given import assigned
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.rules.renaming import may_take
+from kb_check.values.given import assigned
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

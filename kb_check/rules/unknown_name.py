@@ -20,16 +20,16 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import LOST_MODULES, UNLOADED
 from kb_check.findings import Finding
-from kb_check.made_here import knows_all, member_path
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
-from kb_check.tried import is_tried
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import knows_all, member_path
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.flow.types import Resolution
-    from kb_check.known_names import Lacking
+    from kb_check.names.known import Lacking
     from kb_check.script import Script
 
 

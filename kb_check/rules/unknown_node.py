@@ -32,12 +32,12 @@ from kb_build.symbols.api_names import NODE
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import NODE_FAMILIES
 from kb_build.symbols.paths import last_name
-from kb_check.calls import CallSite, calls_not_ready_for
+from kb_check.calls.sites import CallSite, calls_not_ready_for
 from kb_check.findings import Finding, Fix
-from kb_check.mode_keeping import own_names
-from kb_check.node_trees import tree_added_to
-from kb_check.raised import refusing_class
+from kb_check.modes.keeping import own_names
+from kb_check.nodes.trees import tree_added_to
 from kb_check.rule import Rule
+from kb_check.running.raised import refusing_class
 from kb_check.script import once_for_each, once_per_script
 from kb_serve.recognise.names.node_names import same_in_tree, tree_of_family
 
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.symbols.records import Symbol
-    from kb_check.known_names import Lacking
+    from kb_check.names.known import Lacking
     from kb_check.script import Script
 
 _SOCKET = "NodeSocket"

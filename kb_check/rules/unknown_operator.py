@@ -17,16 +17,16 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import OPERATORS
-from kb_check.made_here import members_taken
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
+from kb_check.scene.made_here import members_taken
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.flow.types import Resolution
     from kb_check.findings import Finding
-    from kb_check.known_names import Lacking
+    from kb_check.names.known import Lacking
     from kb_check.script import Script
 
 

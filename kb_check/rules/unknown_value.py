@@ -26,17 +26,17 @@ from kb_build.flow.types import UNKNOWN, Resolution, literal_text
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import NODE_FAMILIES, never_taken
 from kb_build.symbols.paths import argument_of, last_name, plain_path, split_path
-from kb_check.calls import calls_not_ready_for
+from kb_check.calls.sites import calls_not_ready_for
 from kb_check.findings import Finding
-from kb_check.given import assigned, class_values
-from kb_check.literals import written
-from kb_check.made_here import knows_all
-from kb_check.node_trees import is_refused_in, tree_of
-from kb_check.raised import REFUSES, REFUSES_ENUM
+from kb_check.nodes.trees import is_refused_in, tree_of
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
+from kb_check.running.raised import REFUSES, REFUSES_ENUM
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import knows_all
 from kb_check.script import once_per_script
-from kb_check.tried import is_tried
+from kb_check.syntax.literals import written
+from kb_check.values.given import assigned, class_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -15,8 +15,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_check.ignores import UNUSED
 from kb_check.rule import Rule
+from kb_check.text.ignores import UNUSED
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

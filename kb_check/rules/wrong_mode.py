@@ -34,17 +34,25 @@ from bisect import bisect_left, bisect_right
 from typing import TYPE_CHECKING
 
 from kb_build.flow.expressions import constants
-from kb_check.background import is_called_by_others, lines_of_others
-from kb_check.calls import calls
+from kb_check.calls.sites import calls
 from kb_check.findings import Finding
-from kb_check.mode_run import enters_modes, states
-from kb_check.modes import EDIT_TOGGLE, MODE_SET, entering, former_mode, modes_text, modes_wanted, refusal
+from kb_check.modes.run import enters_modes, states
+from kb_check.modes.state import (
+    EDIT_TOGGLE,
+    MODE_SET,
+    entering,
+    former_mode,
+    modes_text,
+    modes_wanted,
+    refusal,
+)
 from kb_check.rule import Rule
+from kb_check.running.background import is_called_by_others, lines_of_others
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_check.calls import CallSite
+    from kb_check.calls.sites import CallSite
     from kb_check.script import Script
 
 _OF_OBJECTS = frozenset(

@@ -21,11 +21,13 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_check.buffers import buffer_of_rows, short_buffer
 from kb_check.findings import Edit, Finding, Fix
-from kb_check.literals import number
-from kb_check.made_here import callee_path
-from kb_check.mathutils_sizes import (
+from kb_check.rule import Rule
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import callee_path
+from kb_check.syntax.literals import number
+from kb_check.values.buffers import buffer_of_rows, short_buffer
+from kb_check.values.mathutils_sizes import (
     MATRIX,
     QUATERNION,
     SIZED,
@@ -35,15 +37,13 @@ from kb_check.mathutils_sizes import (
     in_words,
     size_of,
 )
-from kb_check.rule import Rule
-from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_check.buffers import Rows
-    from kb_check.mathutils_sizes import Size
     from kb_check.script import Script
+    from kb_check.values.buffers import Rows
+    from kb_check.values.mathutils_sizes import Size
 
 _SIGNS: dict[type[ast.operator], str] = {ast.MatMult: "@", ast.Add: "+", ast.Sub: "-", ast.Mult: "*"}
 _AXES = "xyzw"

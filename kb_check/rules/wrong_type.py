@@ -41,30 +41,30 @@ from kb_build.symbols.api_names import GROUPS, ID, NODE, OBJECT, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.object_data import OBJECT_DATA
 from kb_build.symbols.paths import last_name
-from kb_check.annotated_parameters import ONE_IS_WRONG, is_annotated
-from kb_check.brackets import bracketed
-from kb_check.buffers import wide_buffer
-from kb_check.calls import nothing_from, other_way
-from kb_check.conversions import misfit
-from kb_check.documented import layer_misfit
+from kb_check.calls.sites import nothing_from, other_way
 from kb_check.findings import Edit, Finding, Fix, Span
-from kb_check.given import assigned, class_values, given_values
-from kb_check.literals import items, set_of
-from kb_check.made_here import callee_path, is_new, knows_all, named_words, once_bound
-from kb_check.mathutils_sizes import MATRIX
-from kb_check.misfits import describe
-from kb_check.own_properties import given_to_own
-from kb_check.python_paths import is_path
+from kb_check.registered.properties import given_to_own
 from kb_check.rule import Rule
-from kb_check.tried import is_tried
+from kb_check.running.tried import is_tried
+from kb_check.scene.made_here import callee_path, is_new, knows_all, named_words, once_bound
+from kb_check.syntax.annotated_parameters import ONE_IS_WRONG, is_annotated
+from kb_check.syntax.literals import items, set_of
+from kb_check.text.brackets import bracketed
+from kb_check.values.buffers import wide_buffer
+from kb_check.values.conversions import misfit
+from kb_check.values.documented import layer_misfit
+from kb_check.values.given import assigned, class_values, given_values
+from kb_check.values.mathutils_sizes import MATRIX
+from kb_check.values.misfits import describe
+from kb_check.values.python_paths import is_path
 from kb_serve.recognise.names.likely_values import item_called
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_check.given import Given, Taker
-    from kb_check.misfits import Misfit
     from kb_check.script import Script
+    from kb_check.values.given import Given, Taker
+    from kb_check.values.misfits import Misfit
 
 _COLORS = frozenset({"COLOR", "COLOR_GAMMA"})
 _DATA = tuple(f"{T}{name}" for name in OBJECT_DATA.values())

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_check.run_reach import RunReach, may_bring_names
+from kb_check.running.reach import RunReach, may_bring_names
 
 if TYPE_CHECKING:
     from kb_check.checker import Checker

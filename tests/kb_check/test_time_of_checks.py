@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 from whole import by_turns
 
-from kb_check.run_reach import RunReach
+from kb_check.running.reach import RunReach
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_check.project import LoadedFile
-from kb_check.versions import VersionsReport, check_versions
+from kb_check.command.project import LoadedFile
+from kb_check.command.versions import VersionsReport, check_versions
 from simworlds.errors import UserError
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kb_check.project import Group
+    from kb_check.command.project import Group
 
 OLD = b'import bpy\nbpy.context.object.draw_type = "WIRE"\n'
 RIGHT = b'import bpy\nbpy.context.object.display_type = "WIRE"\n'

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from kb_check.findings import Edit, Finding, Span
-from kb_check.text_edits import Text
+from kb_check.text.edits import Text
 from measurements.check_truth import Counts, judge
 from measurements.scripts.truth import Truth, read_truth, run, scripts
 

@@ -192,8 +192,8 @@ EVERYWHERE = (
 
 def test_what_windows_lacks_is_not_needed_to_answer_to_check_and_to_fetch() -> None:
     """The MCP package asks for the system by its name; all else that these commands load is here."""
-    names = """simworlds.cli kb_serve.cli kb_serve.service kb_serve.rebuild kb_serve.knowledge_base kb_check.cli
-        kb_check.run kb_check.tool kb_check.migrate_cli kb_check.stubs_cli kb_build.cli kb_build.ready.fetch
+    names = """simworlds.cli kb_serve.cli kb_serve.service kb_serve.rebuild kb_serve.knowledge_base kb_check.command.cli
+        kb_check.command.run kb_check.tool kb_check.migrate.cli kb_check.stubs.cli kb_build.cli kb_build.ready.fetch
         kb_build.ready.export kb_build.verify simworlds.mcp_transport.connections simworlds.sandbox.runtime"""
     done = subprocess.run(
         [sys.executable, "-c", ABSENT_THERE + IMPORT, *names.split()],

@@ -5,8 +5,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_check.made_here import attributes
 from kb_check.migrate.rewrite import Rewrite
+from kb_check.scene.made_here import attributes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -5,10 +5,10 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_check.brackets import bracketed
 from kb_check.findings import Edit
 from kb_check.migrate.change import Change
 from kb_check.migrate.rewrite import Rewrite
+from kb_check.text.brackets import bracketed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_check.configuration import BadConfiguration, Configuration, read_configuration
+from kb_check.command.configuration import BadConfiguration, Configuration, read_configuration
 from kb_check.findings import Finding, Span
 
 if TYPE_CHECKING:

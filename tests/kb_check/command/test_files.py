@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_check import gitignore
-from kb_check.files import find_files
+from kb_check.command import gitignore
+from kb_check.command.files import find_files
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_check.findings import Edit, Finding, Fix, Span
-from kb_check.fixes import apply_fixes, unified_diff, write_fixed
-from kb_check.source import Cell, Source
+from kb_check.text.fixes import apply_fixes, unified_diff, write_fixed
+from kb_check.text.source import Cell, Source
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 
+from kb_check.command.formats.github import github_lines
+from kb_check.command.formats.json_document import as_json
+from kb_check.command.formats.sarif import as_sarif
+from kb_check.command.formats.text import text_lines
+from kb_check.command.report import FileReport, Report
 from kb_check.findings import Edit, Finding, Fix, Span
-from kb_check.formats.github import github_lines
-from kb_check.formats.json_format import as_json
-from kb_check.formats.sarif import as_sarif
-from kb_check.formats.text import text_lines
-from kb_check.report import FileReport, Report
-from kb_check.source import Source
+from kb_check.text.source import Source
 
 MANY = 20_000
 

@@ -10,9 +10,9 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from places import REPO
 
-from kb_check.fixes import apply_fixes
-from kb_check.project import LoadedFile, check_group
-from kb_check.reading import read_source
+from kb_check.command.project import LoadedFile, check_group
+from kb_check.text.fixes import apply_fixes
+from kb_check.text.reading import read_source
 
 if TYPE_CHECKING:
     from kb_check.checker import Checker

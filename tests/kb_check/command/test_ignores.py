@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from kb_check.findings import Finding, Span
-from kb_check.fixes import apply_fixes
-from kb_check.ignores import Ignores
-from kb_check.source import Source
+from kb_check.text.fixes import apply_fixes
+from kb_check.text.ignores import Ignores
+from kb_check.text.source import Source
 
 RULES = ("a", "b", "c")
 

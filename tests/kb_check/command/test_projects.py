@@ -12,7 +12,7 @@ from places import REPO
 SCRIPT = """
 import json, os, signal
 from pathlib import Path
-from kb_check import project
+from kb_check.command import project
 
 def check_all(base, groups, numbers):
     for number in numbers:

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import multiprocessing
 import sys
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import pytest
+from places import REPO
 
-from kb_check import cache as cache_module
-from kb_check.cache import ResultCache, result_key
+from kb_check.command import cache as cache_module
+from kb_check.command.cache import ResultCache, result_key
 from kb_check.findings import Edit, Finding, Fix, Span
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 SPAN = Span(1, 2, 3, 4)
 FULL = Finding(
@@ -46,6 +44,18 @@ def test_a_key_is_of_all_that_counts() -> None:
         result_key("base", [("a.py", b"x", False)]), result_key("base", [("a", b".pyx", True)]),
     ]  # fmt: skip
     assert len({result_key("base", [file]), *others}) == 8
+
+
+def test_a_key_is_of_all_code_that_findings_come_from(monkeypatch: pytest.MonkeyPatch) -> None:
+    read: set[Path] = set()
+    read_bytes = Path.read_bytes
+    monkeypatch.setattr(Path, "read_bytes", lambda path: read.add(path) or read_bytes(path))
+    cache_module.code_digest.__wrapped__()
+    assert {
+        path
+        for part in ("kb_check", "kb_build", "kb_serve", "simworlds")
+        for path in (REPO / part).rglob("*.py")
+    } == read
 
 
 @pytest.mark.parametrize("version", ["3.11.9", "3.13.1"])

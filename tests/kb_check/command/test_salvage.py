@@ -8,7 +8,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from kb_check.salvage import looks_like_python_2, parses, salvage
+from kb_check.text.salvage import looks_like_python_2, parses, salvage
 
 
 @pytest.mark.parametrize(

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from jsonschema import Draft202012Validator, ValidationError
 
+from kb_check.command.formats.sarif import as_sarif
+from kb_check.command.report import FileReport, Report
 from kb_check.findings import Edit, Finding, Fix, Span
-from kb_check.formats.sarif import as_sarif
-from kb_check.report import FileReport, Report
-from kb_check.source import Cell, Source
+from kb_check.text.source import Cell, Source
 
 if TYPE_CHECKING:
     from collections.abc import Callable

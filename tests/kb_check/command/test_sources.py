@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from kb_check.reading import read_source
+from kb_check.text.reading import read_source
 
 if TYPE_CHECKING:
-    from kb_check.source import Source
+    from kb_check.text.source import Source
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import pytest
 from statements_in_blender import run_statements
 
 from kb_build.symbols.paths import last_name
-from kb_check.calls import callee_of
+from kb_check.calls.sites import callee_of
 
 if TYPE_CHECKING:
     from pathlib import Path

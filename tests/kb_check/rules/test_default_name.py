@@ -8,8 +8,8 @@ import pytest
 from statements_in_blender import run_statements
 from told_by_blender import told_by_blender
 
-from kb_check.fixes import apply_fixes
-from kb_check.source import Source
+from kb_check.text.fixes import apply_fixes
+from kb_check.text.source import Source
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 from statements_in_blender import run_statements
 
-from kb_check.fixes import apply_fixes
-from kb_check.source import Source
+from kb_check.text.fixes import apply_fixes
+from kb_check.text.source import Source
 
 if TYPE_CHECKING:
     from pathlib import Path

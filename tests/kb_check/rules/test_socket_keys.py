@@ -8,7 +8,7 @@ import pytest
 from told_by_blender import told_by_blender
 
 from kb_build.symbols.records import Symbol
-from kb_check.socket_modes import is_internal
+from kb_check.nodes.socket_modes import is_internal
 
 if TYPE_CHECKING:
     from kb_check.checker import Checker

@@ -16,9 +16,9 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 
+from kb_check.stubs.cli import stubs as command
 from kb_check.stubs.modules import MARK
 from kb_check.stubs.package import OutputInTheWay, write_folder, write_wheel
-from kb_check.stubs_cli import stubs as command
 
 SAMPLES = Path(__file__).parent
 # Modules written from docstrings, operators, and what all stubs share.

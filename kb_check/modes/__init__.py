@@ -1,0 +1,1 @@
+"""The mode that the active object is in, and what it decides."""

@@ -1,0 +1,338 @@
+"""In which mode the active object surely is where a script calls an operator, and of which type it is.
+
+A run is followed from statement to statement, through conditions, loops and the script's own functions. Whatever may
+change the mode out of sight ends what is known; an operator that runs in one mode only tells it again.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from contextlib import suppress
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from kb_build.flow.trees import children, walk
+from kb_build.flow.types import Mapping
+from kb_check.calls.sites import calls, calls_by_node
+from kb_check.modes.keeping import (
+    FUNCTIONS,
+    LEFT,
+    REMOVING,
+    SWITCHED,
+    is_harmless,
+    is_operator,
+    own_functions,
+    own_names,
+    sets_active,
+)
+from kb_check.modes.state import UNKNOWN, State, after_operator, has_to_do_with_modes, refusal
+from kb_check.running.context_managers import leaves_scene
+from kb_check.scene.made_here import bindings, knows_all, named_words
+from kb_check.script import once_per_script
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from kb_check.script import Script
+
+_ENTERING = re.compile(
+    r"mode_set|mode_toggle|editmode|sculptmode|posemode|paint_toggle|edit_toggle|mainfile|homefile|app_template"
+    r"|^(mode|poll|is_editmode)$"
+)
+_OF_MODES = re.compile(r"mode|poll")
+_MOST_VISITS = 2000
+
+
+_Function = ast.FunctionDef | ast.AsyncFunctionDef
+_CONDITIONAL = (ast.IfExp, ast.BoolOp, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
+
+
+@once_per_script
+def states(script: Script) -> dict[ast.Call, State]:
+    """Of each call of an operator that has something to do with modes: what is known before it."""
+    if not any(has_to_do_with_modes(call) for call in calls(script)):
+        return {}
+    with suppress(RecursionError):
+        return _Run(script).seen
+    return {}
+
+
+@once_per_script
+def enters_modes(script: Script) -> bool:
+    """Whether a script names anything that may enter a mode or asks for it, or may do so out of sight."""
+    return not knows_all(script) or any(map(_ENTERING.search, named_words(script)))
+
+
+class _Run:
+    """Follows a script, and keeps what is known at each call, whichever way it is come to."""
+
+    def __init__(self, script: Script) -> None:
+        self.script = script
+        self.seen: dict[ast.Call, State] = {}
+        self._calls = calls_by_node(script)
+        self._functions = own_functions(script)
+        self._names = own_names(script)
+        self._outcomes: dict[tuple[_Function, State], State] = {}
+        self._running: list[_Function] = []
+        self._returned: list[list[State]] = []
+        self._jumped: list[list[State]] = []
+        self._calling_lines = {node.lineno for node in script.all(ast.Call, *LEFT)}
+        self._made_in: dict[ast.AST, list[tuple[ast.expr, bool]]] = {}
+        stores = [node for node in script.all(ast.Attribute) if not isinstance(node.ctx, ast.Load)]
+        self._storing_lines = {
+            node.lineno for node in stores if node.attr in SWITCHED or node.attr == "active"
+        }
+        self._parameters = {node.arg for node in script.all(ast.arg)}
+        self._visits = self._finals = 0
+        self._block(script.tree.body, UNKNOWN)
+        direct = {node.func.id for node in script.all(ast.Call) if isinstance(node.func, ast.Name)}
+        handed_on = _handed_on(script)
+        lines = self._telling_lines()
+        for node in script.all(*FUNCTIONS):
+            if not lines.isdisjoint(_lines(node)):
+                is_own = self._functions.get(node.name) is node and node.name in direct
+                if not is_own or node.name in handed_on:
+                    self._function(node, UNKNOWN)
+
+    def _telling_lines(self) -> set[int]:
+        """The lines that have to do with modes, themselves or by the script's own functions that they call."""
+        lines = {node.lineno for node, call in self._calls.items() if has_to_do_with_modes(call)}
+        asked: set[str] = set()
+        while True:
+            names = {name for name, node in self._functions.items() if not lines.isdisjoint(_lines(node))}
+            if names <= asked:
+                return lines
+            asked |= names
+            lines |= {
+                node.lineno
+                for node in self.script.all(ast.Call)
+                if isinstance(node.func, ast.Name) and node.func.id in names
+            }
+
+    def _block(self, statements: Sequence[ast.stmt], state: State | None) -> State | None:
+        """What is known after statements; None where a run does not get behind them."""
+        for statement in statements:
+            if state is None:
+                return None
+            self._visits += 1
+            state = self._statement(statement, state)
+        return state
+
+    def _statement(self, node: ast.stmt, state: State) -> State | None:
+        match node:
+            case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
+                after = state
+            case ast.If():
+                after = self._if(node, self._expressions([node.test], state))
+            case ast.For() | ast.AsyncFor():
+                after = self._loop(node, self._expressions([node.iter], state))
+            case ast.While():
+                after = self._loop(node, state)
+            case ast.With() | ast.AsyncWith():
+                after = self._with(node, state)
+            case ast.Try() | ast.TryStar():
+                after = self._try(node, state)
+            case ast.Match():
+                subject = self._expressions([node.subject], state)
+                after = self._all_ways([case.body for case in node.cases], State(muted=subject.muted))
+            case _:
+                after = self._simple(node, self._stores(node, self._expressions([node], state)))
+        return after
+
+    def _simple(self, node: ast.stmt, state: State) -> State | None:
+        """What is known behind a statement that has none within it; a run may leave with it."""
+        left = State(muted=state.muted) if self._finals else state
+        if isinstance(node, ast.Return) and self._returned:
+            self._returned[-1].append(left)
+        if isinstance(node, (ast.Break, ast.Continue)) and self._jumped:
+            self._jumped[-1].append(left)
+        return None if isinstance(node, (ast.Return, ast.Raise, ast.Break, ast.Continue)) else state
+
+    def _if(self, node: ast.If, state: State) -> State | None:
+        words = {part.attr for part in walk(node.test) if isinstance(part, ast.Attribute)}
+        asks = self._asks(node.test)
+        inside = replace(state, mode="" if asks else state.mode, kind="" if words else state.kind)
+        ways = self._block(node.body, inside), self._block(node.orelse, inside) if node.orelse else state
+        after = _join(*ways)
+        return replace(after, mode="") if after and asks and None in ways else after
+
+    def _asks(self, test: ast.expr) -> bool:
+        """Whether a condition may have to do with the mode: names it, or depends on what callers say."""
+        for node in walk(test):
+            if isinstance(node, ast.Attribute) and _OF_MODES.search(node.attr):
+                return True
+            if isinstance(node, ast.Name) and (node.id in self._parameters or node.id in self._names):
+                return True
+            if isinstance(node, ast.Name) and any(
+                value is None or _mentions_modes(value) for value in bindings(self.script).get(node.id, ())
+            ):
+                return True
+        return False
+
+    def _all_ways(self, bodies: Iterable[Sequence[ast.stmt]], state: State) -> State | None:
+        after: State | None = state
+        for body in bodies:
+            after = _join(after, self._block(body, state))
+        return after
+
+    def _loop(self, node: ast.For | ast.AsyncFor | ast.While, state: State) -> State | None:
+        while True:
+            self._jumped.append([])
+            at_test = state
+            if isinstance(node, ast.While):
+                at_test = self._expressions([node.test], state)
+                at_test = State(muted=state.muted) if self._asks(node.test) else at_test
+            after = self._block(node.body, at_test)
+            for jumped in self._jumped.pop():
+                after = _join(after, jumped)
+            again = _join(state, after) or state
+            if again == state:
+                asks = isinstance(node, ast.While) and self._asks(node.test)
+                return self._block(node.orelse, State(muted=state.muted) if asks else state)
+            state = again
+
+    def _with(self, node: ast.With | ast.AsyncWith, state: State) -> State | None:
+        items = [item.context_expr for item in node.items]
+        state = self._expressions(items, state)
+        if any(not isinstance(item, ast.Call) or "override" in ast.unparse(item) for item in items):
+            self._block(node.body, State(muted=True))
+            return State(muted=state.muted)
+        if any("suppress" in ast.unparse(item) for item in items):
+            after = self._block(node.body, replace(state, muted=True))
+            return replace(_join(State(), after) or State(), muted=state.muted)
+        after = self._block(node.body, state)
+        return after if leaves_scene(node) or after is None else State(muted=state.muted)
+
+    def _try(self, node: ast.Try | ast.TryStar, state: State) -> State | None:
+        muted = bool(node.handlers)
+        self._finals += bool(node.finalbody)
+        after = self._block(node.body, replace(state, muted=muted or state.muted))
+        after = self._block(node.orelse, replace(after, muted=state.muted)) if after else None
+        for handler in node.handlers:
+            after = _join(after, self._block(handler.body, State(muted=state.muted)))
+        self._finals -= bool(node.finalbody)
+        if not node.finalbody:
+            return after
+        known = self._block(node.finalbody, after or State(muted=state.muted))
+        return known if after else None
+
+    def _function(self, node: _Function, state: State) -> State:
+        """What is known after a call of one of the script's own functions."""
+        if node in self._running or self._visits > _MOST_VISITS:
+            return State(muted=state.muted)
+        if (known := self._outcomes.get((node, state))) is not None:
+            return known
+        self._running.append(node)
+        self._returned.append([])
+        jumped, self._jumped = self._jumped, []
+        finals, self._finals = self._finals, 0
+        after = self._block(node.body, state)
+        self._jumped, self._finals = jumped, finals
+        for returned in self._returned.pop():
+            after = _join(after, returned)
+        self._running.pop()
+        found = self._outcomes[node, state] = after or State(muted=state.muted)
+        return found
+
+    def _expressions(self, roots: Iterable[ast.AST], state: State) -> State:
+        """What is known after the calls within expressions, in the order in which they are made."""
+        for root in roots:
+            for call, is_sure in self._made(root):
+                if not isinstance(call, ast.Call):
+                    state = State(muted=state.muted)
+                elif is_sure:
+                    state = self._call(call, state)
+                else:
+                    self._call(call, State(muted=True))
+                    state = state if is_harmless(self.script, call) else State(muted=state.muted)
+        return state
+
+    def _made(self, root: ast.AST) -> list[tuple[ast.expr, bool]]:
+        """The calls within a statement or an expression in their order; a run may come there often."""
+        if isinstance(root, (ast.stmt, ast.expr)) and self._calling_lines.isdisjoint(_lines(root)):
+            return []
+        if (found := self._made_in.get(root)) is None:
+            found = self._made_in[root] = sorted(_made_calls(root), key=lambda pair: _end(pair[0]))
+        return found
+
+    def _call(self, node: ast.Call, state: State) -> State:
+        if is_operator(node) and not is_harmless(self.script, node):
+            return self._operator(node, state)
+        if isinstance(node.func, ast.Name) and (function := self._functions.get(node.func.id)):
+            return self._function(function, state)
+        if is_harmless(self.script, node):
+            return state
+        removes = isinstance(node.func, ast.Attribute) and node.func.attr in REMOVING
+        return State("OBJECT" if removes and state.mode == "OBJECT" else "", muted=state.muted)
+
+    def _operator(self, node: ast.Call, state: State) -> State:
+        call = self._calls.get(node)
+        given = self.script.type_of(node.args[0]) if node.args else None
+        if call is None or call.callee.symbol.kind != "operator" or isinstance(given, Mapping):
+            return State(muted=state.muted)
+        plain = all(isinstance(value, ast.Constant) for value in node.args)
+        if not plain:
+            return State(muted=state.muted)
+        self.seen[node] = self.seen.get(node, state).joined(state)
+        if refusal(self.script, call, state):
+            return state
+        return replace(after_operator(call, state), muted=state.muted)
+
+    def _stores(self, statement: ast.stmt, state: State) -> State:
+        """What is known after what a statement assigns."""
+        if self._storing_lines.isdisjoint(_lines(statement)):
+            return state
+        for node in walk(statement):
+            if not isinstance(node, ast.Attribute) or isinstance(node.ctx, ast.Load):
+                continue
+            if node.attr in SWITCHED:
+                state = State(muted=state.muted)
+            elif sets_active(self.script, node):
+                stays = state.mode == "OBJECT" and not enters_modes(self.script)
+                state = State("OBJECT" if stays else "", muted=state.muted)
+        return state
+
+
+def _join(first: State | None, second: State | None) -> State | None:
+    if first is None or second is None:
+        return first or second
+    return first.joined(second)
+
+
+def _lines(node: ast.stmt | ast.expr) -> range:
+    return range(node.lineno, (node.end_lineno or node.lineno) + 1)
+
+
+def _mentions_modes(value: ast.expr) -> bool:
+    return any(
+        (isinstance(node, ast.Attribute) and _OF_MODES.search(node.attr) is not None)
+        or (isinstance(node, ast.Constant) and isinstance(node.value, bool))
+        for node in walk(value)
+    )
+
+
+def _end(node: ast.expr) -> tuple[int, int]:
+    return node.end_lineno or 0, node.end_col_offset or 0
+
+
+def _made_calls(root: ast.AST) -> Iterator[tuple[ast.expr, bool]]:
+    """The calls within a statement or an expression, and what lets others run; whether each is surely made, once."""
+    waiting = [(root, True)]
+    while waiting:
+        node, is_sure = waiting.pop()
+        if isinstance(node, (ast.Lambda, *FUNCTIONS, ast.ClassDef)):
+            continue
+        if isinstance(node, (ast.Call, *LEFT)):
+            yield node, is_sure
+        is_sure = is_sure and not isinstance(node, _CONDITIONAL)
+        waiting += [(child, is_sure) for child in children(node)]
+
+
+@once_per_script
+def _handed_on(script: Script) -> frozenset[str]:
+    """The names that are used for more than to call them."""
+    called = {node.func for node in script.all(ast.Call)}
+    return frozenset(
+        node.id for node in script.all(ast.Name) if isinstance(node.ctx, ast.Load) and node not in called
+    )

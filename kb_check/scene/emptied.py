@@ -1,0 +1,157 @@
+"""Where a script has surely made the file an empty one before: ``bpy.ops.wm.read_factory_settings(use_empty=True)``."""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from kb_build.flow.trees import children, walk
+from kb_check.scene.made_here import callee_path, owners, places
+from kb_check.script import once_per_script
+from kb_check.syntax.literals import functions
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_check.script import Script
+
+EMPTYING = frozenset({"bpy.ops.wm.read_factory_settings", "bpy.ops.wm.read_homefile"})
+_Function = ast.FunctionDef | ast.AsyncFunctionDef
+
+
+def is_emptied_before(script: Script, statement: ast.stmt) -> bool:
+    """Whether the file surely is emptied before a statement is come to."""
+    is_after, function = _standing(script, statement)
+    return is_after or (function is not None and function in _called_after(script))
+
+
+@once_per_script
+def empties_only(script: Script) -> bool:
+    """Whether every file that a script reads is an empty one, and there is one."""
+    calls = [node for node in script.all(ast.Call) if callee_path(script, node) in EMPTYING]
+    return bool(calls) and all(map(_is_empty, calls))
+
+
+def _is_empty(call: ast.Call) -> bool:
+    return any(
+        keyword.arg == "use_empty" and isinstance(keyword.value, ast.Constant) and keyword.value.value is True
+        for keyword in call.keywords
+    )
+
+
+@once_per_script
+def _emptying(script: Script) -> frozenset[ast.stmt]:
+    """The statements that empty the file, or call a function of the script's that surely does."""
+    found: list[ast.stmt] = []
+    callers: dict[str, list[ast.stmt]] = {}
+    for node in script.all(ast.Expr):
+        match node.value:
+            case ast.Call() as call if callee_path(script, call) in EMPTYING:
+                found.append(node)
+            case ast.Call(func=ast.Name(id=name)):
+                callers.setdefault(name, []).append(node)
+            case _:
+                pass
+    names = {
+        statement: name
+        for name, node in functions(script).items()
+        for statement in _surely_come_to(node.body)
+    }
+    for statement in found:  # which grows
+        found += callers.pop(names.get(statement, ""), ())
+    return frozenset(found)
+
+
+def _surely_come_to(body: list[ast.stmt]) -> Iterator[ast.stmt]:
+    """The statements of a function's body that a call surely comes to."""
+    for statement in body:
+        yield statement
+        if any(
+            isinstance(node, (ast.Return, ast.Raise, ast.Yield, ast.YieldFrom)) for node in walk(statement)
+        ):
+            return
+
+
+def _standing(script: Script, statement: ast.stmt) -> tuple[bool, _Function | None]:
+    """Whether a statement stands behind what empties the file, and if not, the function that it is in."""
+    here: ast.AST | None = statement
+    while isinstance(here, ast.stmt) and here in places(script):
+        body, place = places(script)[here]
+        if _first_emptying(script).get(body[0], place) < place:
+            return True, None
+        here = owners(script)[here]
+        if isinstance(here, _Function):
+            return False, here
+    return False, None
+
+
+@once_per_script
+def _first_emptying(script: Script) -> dict[ast.stmt, int]:
+    """First statement of a body → the place there of the first one that empties the file."""
+    found: dict[ast.stmt, int] = {}
+    for statement in _emptying(script):
+        if statement in places(script):
+            body, place = places(script)[statement]
+            found[body[0]] = min(place, found.get(body[0], place))
+    return found
+
+
+@once_per_script
+def _called_after(script: Script) -> frozenset[ast.AST]:
+    """The functions that the script calls, and only behind what empties the file."""
+    named: dict[str, list[ast.Name]] = {}
+    for node in script.all(ast.Name):
+        if isinstance(node.ctx, ast.Load):
+            named.setdefault(node.id, []).append(node)
+    found: list[ast.AST] = []
+    missing: Counter[ast.AST] = Counter()  # functions that have to be called so first
+    users: dict[ast.AST, list[ast.AST]] = {}
+    for name, function in functions(script).items():
+        outer = None if function.decorator_list else _callers(script, named.get(name, []))
+        if outer is None:
+            continue
+        missing[function] = len(outer)
+        for caller in outer:
+            users.setdefault(caller, []).append(function)
+        if not outer:
+            found.append(function)
+    for function in found:  # which grows
+        for user in users.get(function, ()):
+            missing[user] -= 1
+            if not missing[user]:
+                found.append(user)
+    return frozenset(found)
+
+
+def _callers(script: Script, named: list[ast.Name]) -> list[_Function] | None:
+    """The functions in which another one is called where the file may not be empty yet.
+
+    None where it is never called, used for more than that, or called so in no function.
+    """
+    found: list[_Function] = []
+    for node in named:
+        call = script.calls_of.get(node)
+        statement = _around(script).get(call) if call else None
+        is_after, function = _standing(script, statement) if statement else (False, None)
+        if not is_after:
+            if function is None:
+                return None
+            found.append(function)
+    return found if named else None
+
+
+@once_per_script
+def _around(script: Script) -> dict[ast.Call, ast.stmt]:
+    """The innermost statement around each call."""
+    found: dict[ast.Call, ast.stmt] = {}
+    for statement in places(script):
+        waiting: list[ast.AST] = [*children(statement)]
+        while waiting:
+            node = waiting.pop()
+            if isinstance(node, (ast.stmt, ast.ExceptHandler, ast.match_case)):
+                continue
+            if isinstance(node, ast.Call):
+                found[node] = statement
+            waiting += children(node)
+    return found

@@ -1,0 +1,143 @@
+"""What a body of statements removes, statement by statement, while names still hold it.
+
+Only what surely runs, in this order, is followed: the statements of the body themselves, not what is in their blocks.
+"""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+from kb_build.flow.types import Collection, Instance
+from kb_build.symbols.api_names import ID
+from kb_build.symbols.api_names import TYPES as T
+from kb_check.calls.sites import calls_by_node
+from kb_check.modes.edit_bones import bound_in, names_in, names_of_others
+from kb_check.scene.made_here import callee_path
+
+if TYPE_CHECKING:
+    from kb_build.symbols.records import Symbol
+    from kb_check.script import Script
+
+_ELEMENTS = frozenset({f"bmesh.types.BM{kind}Seq.remove" for kind in ("Vert", "Edge", "Face")})
+# What frees the thing that it is called on.
+_FREEING = frozenset({"bmesh.types.BMesh.free"})
+# What makes data that belong to an object alone → what removes them.
+OUTSIDE_MAIN = {
+    f"{T}Object.to_mesh": f"{T}Object.to_mesh_clear",
+    f"{T}Object.to_curve": f"{T}Object.to_curve_clear",
+}
+_CLEARING = frozenset(OUTSIDE_MAIN.values())
+_NAMES = ("remove", "free", "clear")
+_TAKING = frozenset({"new", "get", "add"})
+
+
+class Removal(NamedTuple):
+    """What removed a thing, and in which line."""
+
+    path: str
+    line: int
+
+
+@dataclass(slots=True)
+class Removed:
+    """What is known before a statement. ``gone``: the names that hold what was removed.
+
+    ``_held`` are names with the place that their thing belongs to, as it is written: ``nodes``, ``ev.to_mesh``;
+    ``_holding`` is the same by place, and ``_places`` has the places by the names that they are written with.
+    """
+
+    script: Script
+    gone: dict[str, Removal] = field(default_factory=dict[str, Removal])
+    _held: dict[str, str] = field(default_factory=dict[str, str])
+    _holding: dict[str, set[str]] = field(default_factory=dict[str, set[str]])
+    _places: dict[str, set[str]] = field(default_factory=dict[str, set[str]])
+
+    def pass_by(self, statement: ast.stmt) -> None:
+        """Goes on to what is known behind a statement."""
+        for name in bound_in(statement):
+            self.gone.pop(name, None)
+            self._held.pop(name, None)
+            for place in self._places.pop(name, ()):
+                self._forget(place)
+        match statement:
+            case ast.Expr(value=ast.Call() as call):
+                self._remove(call)
+            case ast.Assign(targets=[ast.Name(id=name)], value=value) if place := self._place(value):
+                self._hold(name, place, value)
+            case _:
+                pass
+
+    def _remove(self, call: ast.Call) -> None:
+        site = calls_by_node(self.script).get(call)
+        if site is None or not isinstance(call.func, ast.Attribute):
+            return
+        symbol, owner = site.callee.symbol, call.func.value
+        removal = Removal(symbol.path, call.lineno)
+        if symbol.path in _FREEING:
+            self._lose(owner, removal)
+        elif symbol.path in _CLEARING:
+            maker = next(maker for maker, clear in OUTSIDE_MAIN.items() if clear == symbol.path)
+            self._lose_held(f"{ast.unparse(owner)}.{maker.rpartition('.')[2]}", removal)
+        elif symbol.name == "clear" and not symbol.parameters and self._owns_items(owner):
+            self._lose_held(ast.unparse(owner), removal)
+        elif removes_argument(symbol, is_rna=site.callee.is_rna) and not site.has_unpacking:
+            given = next((node for parameter, node in site.arguments() if parameter.required), None)
+            self._lose(given, removal)
+
+    def _lose(self, thing: ast.expr | None, removal: Removal) -> None:
+        if isinstance(thing, ast.Name) and thing.id not in names_of_others(self.script):
+            self.gone[thing.id] = removal
+
+    def _lose_held(self, place: str, removal: Removal) -> None:
+        for name in self._forget(place):
+            if name not in names_of_others(self.script):
+                self.gone[name] = removal
+
+    def _hold(self, name: str, place: str, value: ast.expr) -> None:
+        self._held[name] = place
+        self._holding.setdefault(place, set()).add(name)
+        for read in names_in(value):
+            self._places.setdefault(read, set()).add(place)
+
+    def _forget(self, place: str) -> list[str]:
+        """Forgets what belongs to a place; the names that held it."""
+        names = sorted(self._holding.pop(place, ()))
+        return [name for name in names if self._held.get(name) == place and self._held.pop(name)]
+
+    def _place(self, value: ast.expr) -> str:
+        """What a thing belongs to that a name is to hold, as it is written; empty where that is not known."""
+        match value:
+            case ast.Call(func=ast.Attribute() as function) if (
+                callee_path(self.script, value) in OUTSIDE_MAIN
+            ):
+                return ast.unparse(function)
+            case ast.Call(func=ast.Attribute(value=owner, attr=name)) if name in _TAKING:
+                return ast.unparse(owner) if callee_path(self.script, value) else ""
+            case ast.Subscript(value=owner, slice=ast.Constant()) if self._owns_items(owner):
+                return ast.unparse(owner)
+            case _:
+                return ""
+
+    def _owns_items(self, node: ast.expr) -> bool:
+        """Whether something is a collection of parts, which go with it, and not of data-blocks, which stay."""
+        kind = self.script.type_of(node)
+        element = kind.element if isinstance(kind, Collection) else None
+        if not isinstance(element, Instance) or not element.cls.startswith(T):
+            return False
+        return not self.script.api.descends(element.cls, ID)
+
+
+def may_remove(script: Script) -> bool:
+    """Whether a script names anything that removes."""
+    return any(node.attr.endswith(_NAMES) for node in script.all(ast.Attribute))
+
+
+def removes_argument(symbol: Symbol, *, is_rna: bool) -> bool:
+    """Whether a function removes the one thing that it must be given."""
+    if symbol.path in _ELEMENTS:
+        return True
+    required = [parameter for parameter in symbol.parameters if parameter.required]
+    is_removing = is_rna and (symbol.name == "remove" or symbol.name.endswith("_remove"))
+    return is_removing and len(required) == 1 and required[0].plain_type[:1].isupper()

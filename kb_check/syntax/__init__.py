@@ -1,0 +1,1 @@
+"""What a script's syntax tree shows by itself, whatever Blender's API says."""
