@@ -8,16 +8,11 @@ from typing import TYPE_CHECKING
 
 from kb_check.calls.sites import calls_by_node, giving
 from kb_check.findings import Fix
-from kb_check.scene.made_here import (
-    asked_names,
-    bindings,
-    has_plain_operators_only,
-    is_new,
-    keywords_and_texts,
-    knows_all,
-    named_words,
-)
+from kb_check.running.out_of_sight import knows_all
+from kb_check.scene.made_here import has_plain_operators_only, is_new
 from kb_check.script import once_for_each
+from kb_check.syntax.bindings import bindings
+from kb_check.syntax.words import asked_names, keywords_and_texts, named_words
 
 if TYPE_CHECKING:
     from kb_check.calls.sites import CallSite

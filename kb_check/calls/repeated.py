@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import walk
 from kb_check.modes.keeping import is_harmless, own_names
-from kb_check.scene.made_here import bindings, named_words, places
 from kb_check.script import once_for_each, once_per_script
+from kb_check.syntax.bindings import bindings
+from kb_check.syntax.bodies import places
+from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -11,8 +11,8 @@ from kb_build.flow.types import ClassObject, Function, NoneValue, Operator, memb
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.records import RETURNS_NONE
 from kb_check.findings import Edit, Span
-from kb_check.scene.made_here import bindings
 from kb_check.script import once_for_each, once_per_script
+from kb_check.syntax.bindings import bindings
 from kb_check.syntax.literals import times_bound
 from kb_serve.signatures import signature_arguments
 

@@ -12,12 +12,15 @@ from typing import TYPE_CHECKING
 from kb_build.flow.trees import children, walk
 from kb_build.flow.types import Instance
 from kb_build.symbols.api_names import TYPES as T
+from kb_check.calls.resolved import callee_path
 from kb_check.calls.sites import calls_by_node
 from kb_check.modes.keeping import keeps_mode, run_in, sets_active
 from kb_check.modes.state import MODE_SET, literal_argument
-from kb_check.scene.made_here import bodies, callee_path, computes_names, named_words
+from kb_check.running.out_of_sight import computes_names
 from kb_check.script import once_per_script
+from kb_check.syntax.bodies import bodies
 from kb_check.syntax.literals import bound_names
+from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -10,15 +10,17 @@ from kb_build.flow.facts import SET_ACTIVE
 from kb_build.flow.trees import APART, children
 from kb_check.calls.sites import calls_by_node
 from kb_check.running.computing import CALLING, RUNNING, STORING
-from kb_check.scene.made_here import bindings, knows_all, stored_names
+from kb_check.running.out_of_sight import knows_all
 from kb_check.script import once_per_script
+from kb_check.syntax.bindings import bindings
+from kb_check.syntax.definitions import FUNCTIONS, FunctionDefinition
+from kb_check.syntax.words import stored_names
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_check.script import Script
 
-FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 LEFT = (ast.Yield, ast.YieldFrom, ast.Await)  # lets others run meanwhile
 SWITCHED = frozenset({"scene", "view_layer", "workspace", "hide_viewport", "exclude"})
 REMOVING = frozenset(
@@ -35,7 +37,6 @@ REMOVING = frozenset(
     }
 )
 _BUILTINS = frozenset(dir(builtins)) - RUNNING - STORING - CALLING
-_Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def keeps_mode(script: Script, node: ast.AST) -> bool:
@@ -148,9 +149,9 @@ def own_names(script: Script) -> frozenset[str]:
 
 
 @once_per_script
-def own_functions(script: Script) -> dict[str, _Function]:
+def own_functions(script: Script) -> dict[str, FunctionDefinition]:
     """The script's functions that a name surely calls: plain ones, defined once, that nothing else is called like."""
-    found: dict[str, list[_Function]] = {}
+    found: dict[str, list[FunctionDefinition]] = {}
     methods = {item for node in script.all(ast.ClassDef) for item in node.body}
     for node in script.all(*FUNCTIONS):
         if node not in methods:

@@ -16,7 +16,6 @@ from kb_build.flow.trees import children, walk
 from kb_build.flow.types import Mapping
 from kb_check.calls.sites import calls, calls_by_node
 from kb_check.modes.keeping import (
-    FUNCTIONS,
     LEFT,
     REMOVING,
     SWITCHED,
@@ -28,8 +27,11 @@ from kb_check.modes.keeping import (
 )
 from kb_check.modes.state import UNKNOWN, State, after_operator, has_to_do_with_modes, refusal
 from kb_check.running.context_managers import leaves_scene
-from kb_check.scene.made_here import bindings, knows_all, named_words
+from kb_check.running.out_of_sight import knows_all
 from kb_check.script import once_per_script
+from kb_check.syntax.bindings import bindings
+from kb_check.syntax.definitions import FUNCTIONS, FunctionDefinition
+from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -43,8 +45,6 @@ _ENTERING = re.compile(
 _OF_MODES = re.compile(r"mode|poll")
 _MOST_VISITS = 2000
 
-
-_Function = ast.FunctionDef | ast.AsyncFunctionDef
 _CONDITIONAL = (ast.IfExp, ast.BoolOp, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 
 
@@ -73,8 +73,8 @@ class _Run:
         self._calls = calls_by_node(script)
         self._functions = own_functions(script)
         self._names = own_names(script)
-        self._outcomes: dict[tuple[_Function, State], State] = {}
-        self._running: list[_Function] = []
+        self._outcomes: dict[tuple[FunctionDefinition, State], State] = {}
+        self._running: list[FunctionDefinition] = []
         self._returned: list[list[State]] = []
         self._jumped: list[list[State]] = []
         self._calling_lines = {node.lineno for node in script.all(ast.Call, *LEFT)}
@@ -217,7 +217,7 @@ class _Run:
         known = self._block(node.finalbody, after or State(muted=state.muted))
         return known if after else None
 
-    def _function(self, node: _Function, state: State) -> State:
+    def _function(self, node: FunctionDefinition, state: State) -> State:
         """What is known after a call of one of the script's own functions."""
         if node in self._running or self._visits > _MOST_VISITS:
             return State(muted=state.muted)

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 from kb_build.flow.types import Collection, Instance, Plain, Sequence, Tuple
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.sites import callee_of
-from kb_check.scene.made_here import bindings, members_taken
 from kb_check.script import once_per_script
+from kb_check.syntax.bindings import bindings
+from kb_check.syntax.words import members_taken
 from kb_check.values.conversions import misfit
 from kb_check.values.given import parameter_taker
 

@@ -8,18 +8,12 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import ID
 from kb_build.symbols.api_names import TYPES as T
-from kb_check.scene.made_here import (
-    attributes,
-    called_operators,
-    callee_path,
-    is_new,
-    keywords_and_texts,
-    knows_all,
-    members_taken,
-    named_words,
-)
+from kb_check.calls.resolved import called_operators, callee_path
+from kb_check.running.out_of_sight import knows_all
+from kb_check.scene.made_here import is_new
 from kb_check.scene.opening import OPENING
 from kb_check.script import once_per_script
+from kb_check.syntax.words import attributes, keywords_and_texts, members_taken, named_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

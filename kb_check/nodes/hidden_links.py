@@ -5,10 +5,12 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_check.calls.resolved import callee_path
 from kb_check.nodes.settings import setting_of
 from kb_check.nodes.socket_modes import deciding, is_shown, showing
-from kb_check.scene.made_here import LINKS_NEW, callee_path, is_new, named_words
+from kb_check.scene.made_here import LINKS_NEW, is_new
 from kb_check.script import once_per_script
+from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -16,13 +16,16 @@ from typing import TYPE_CHECKING
 from kb_build.flow.types import UNKNOWN, Instance, literal_texts
 from kb_build.symbols.api_names import SIDES
 from kb_build.symbols.api_names import TYPES as T
+from kb_check.calls.resolved import called_operators
 from kb_check.calls.sites import calls, calls_by_node
 from kb_check.nodes.group_inputs import makes_all_groups
 from kb_check.running.computing import CALLING, computing
+from kb_check.running.out_of_sight import knows_all
 from kb_check.running.raised import LACKS_KEY
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import attributes, called_operators, is_new, knows_all
+from kb_check.scene.made_here import is_new
 from kb_check.script import once_per_script
+from kb_check.syntax.words import attributes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -7,16 +7,11 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.flags import usual_default
 from kb_build.symbols.taken import NEVER
-from kb_check.scene.made_here import (
-    assignments,
-    attributes,
-    bindings,
-    is_new,
-    keywords_and_texts,
-    places,
-    statement_of,
-)
+from kb_check.scene.made_here import is_new
 from kb_check.script import once_for_each, once_per_script
+from kb_check.syntax.bindings import assignments, bindings
+from kb_check.syntax.bodies import places, statement_of
+from kb_check.syntax.words import attributes, keywords_and_texts
 
 if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol

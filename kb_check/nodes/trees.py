@@ -9,8 +9,8 @@ from kb_build.flow.types import Collection, Instance
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import last_name
 from kb_check.calls.sites import calls_by_node
-from kb_check.scene.made_here import bindings
 from kb_check.script import once_for_each
+from kb_check.syntax.bindings import bindings
 
 if TYPE_CHECKING:
     from kb_build.symbols.records import EnumItem

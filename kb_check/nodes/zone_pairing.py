@@ -6,8 +6,9 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.records import PAIRS, WHEN_PAIRED
-from kb_check.scene.made_here import attributes, named_words, statement_of
 from kb_check.script import once_per_script
+from kb_check.syntax.bodies import statement_of
+from kb_check.syntax.words import attributes, named_words
 
 if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol

@@ -11,6 +11,7 @@ from kb_build.flow.types import ClassObject
 from kb_check.registered.blender_types import TYPES, callbacks, needs
 from kb_check.running.computing import NAMESPACES, RUNNING, STORING, computing
 from kb_check.script import once_per_script
+from kb_check.syntax.definitions import FunctionDefinition
 from kb_check.syntax.literals import bound_names, times_bound
 
 if TYPE_CHECKING:
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
 # Name → the one statement of a body that gives it; None where several do, or one that may not be run.
 Body = dict[str, ast.stmt | None]
-FunctionDefinition = ast.FunctionDef | ast.AsyncFunctionDef
 
 _DEEPEST = 20
 _REGISTERING = frozenset({"register_class", "register_classes_factory"})

@@ -10,8 +10,8 @@ from kb_build.flow.types import ClassObject
 from kb_build.symbols.api_names import ID
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.records import Symbol
+from kb_check.calls.resolved import callee_path
 from kb_check.registered.classes import own_classes
-from kb_check.scene.made_here import callee_path
 from kb_check.script import once_per_script
 from kb_check.syntax.literals import lists_left_alone, number, times_bound, written
 from kb_check.values.given import Taker

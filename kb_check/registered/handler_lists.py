@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import HANDLERS
-from kb_check.scene.made_here import alias
+from kb_check.syntax.bindings import alias
 
 if TYPE_CHECKING:
     import ast

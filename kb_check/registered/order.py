@@ -6,7 +6,7 @@ import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_check.scene.made_here import callee_path
+from kb_check.calls.resolved import callee_path
 from kb_check.script import once_per_script
 from kb_check.syntax.literals import lists_left_alone, written
 

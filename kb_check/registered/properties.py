@@ -10,12 +10,13 @@ from kb_build.flow.facts import OF_OPERATOR
 from kb_build.flow.types import UNKNOWN, ClassObject, Instance, LocalInstance, Operator, members
 from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.api_names import TYPES as T
+from kb_check.calls.resolved import callee_path
 from kb_check.registered.classes import own_classes
 from kb_check.registered.declarations import OwnProperty, declared
 from kb_check.running.computing import RUNNING, STORING, computing
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import attributes, callee_path
 from kb_check.script import once_per_script
+from kb_check.syntax.words import attributes
 from kb_check.values.given import Given, assigned
 
 if TYPE_CHECKING:

@@ -31,7 +31,7 @@ from kb_check.findings import Finding
 from kb_check.modes.edit_bones import EDIT_BONE, Bones, edited_outside, names_edit_bones, surely_run
 from kb_check.rule import Rule
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import bodies
+from kb_check.syntax.bodies import bodies
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

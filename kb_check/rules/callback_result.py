@@ -25,11 +25,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.trees import called_name, children
 from kb_build.symbols.api_names import TYPES
+from kb_check.calls.resolved import callee_path
 from kb_check.calls.sites import callee_of
 from kb_check.findings import Finding, Fix
-from kb_check.registered.classes import FunctionDefinition, own_classes
+from kb_check.registered.classes import own_classes
 from kb_check.rule import Rule
-from kb_check.scene.made_here import callee_path
 from kb_check.script import once_per_script
 from kb_check.syntax.bodies import bodies_of
 from kb_check.syntax.literals import set_of
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol
     from kb_check.registered.classes import OwnClass
     from kb_check.script import Script
+    from kb_check.syntax.definitions import FunctionDefinition
 
 _Scope = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda
 _SIMPLE = (

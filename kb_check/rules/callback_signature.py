@@ -26,8 +26,9 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.registered.blender_types import FEWEST_ARGUMENTS
-from kb_check.registered.classes import FunctionDefinition, own_classes
+from kb_check.registered.classes import own_classes
 from kb_check.rule import Rule
+from kb_check.syntax.definitions import FunctionDefinition
 from simworlds.counting import counted
 
 if TYPE_CHECKING:

@@ -41,22 +41,18 @@ from kb_build.symbols.records import (
     ENDS_WITHOUT,
     UNSET_BY,
 )
+from kb_check.calls.resolved import called_operators, callee_path
 from kb_check.calls.sites import CallSite, calls
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
 from kb_check.running.asked_for_none import tested_names
+from kb_check.running.out_of_sight import knows_all
 from kb_check.scene.emptied import EMPTYING, is_emptied_before
-from kb_check.scene.made_here import (
-    assignments,
-    bindings,
-    called_operators,
-    callee_path,
-    is_named_before,
-    knows_all,
-    makers,
-)
+from kb_check.scene.made_here import makers
 from kb_check.scene.opening import OPENING
 from kb_check.script import once_per_script
+from kb_check.syntax.bindings import assignments, bindings
+from kb_check.syntax.named_before import is_named_before
 from kb_check.values.given import Given, given_values
 
 if TYPE_CHECKING:

@@ -29,10 +29,11 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.sites import calls
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
+from kb_check.running.out_of_sight import computes_names
 from kb_check.running.raised import LACKS_KEY
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import computes_names, texts_but_keys
 from kb_check.script import once_per_script
+from kb_check.syntax.words import texts_but_keys
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

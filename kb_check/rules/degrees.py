@@ -16,9 +16,9 @@ import ast
 import math
 from typing import TYPE_CHECKING
 
+from kb_check.calls.resolved import callee_path
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
-from kb_check.scene.made_here import callee_path
 from kb_check.syntax.literals import items, number
 from kb_check.values.given import given_values
 

@@ -23,10 +23,13 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES as T
+from kb_check.calls.resolved import callee_path
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
-from kb_check.scene.made_here import assignments, callee_path, computes_names, named_words, once_bound
+from kb_check.running.out_of_sight import computes_names
+from kb_check.syntax.bindings import assignments, once_bound
 from kb_check.syntax.literals import written
+from kb_check.syntax.words import named_words
 from kb_check.values.given import given_values
 
 if TYPE_CHECKING:

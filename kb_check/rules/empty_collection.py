@@ -22,18 +22,13 @@ from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import last_name
 from kb_build.symbols.records import EMPTY
+from kb_check.calls.resolved import callee_path, member_path
 from kb_check.findings import Finding
 from kb_check.modes.edit_bones import edited_outside
 from kb_check.rule import Rule
+from kb_check.running.out_of_sight import knows_all
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import (
-    callee_path,
-    has_new_data,
-    has_plain_operators_only,
-    is_new,
-    knows_all,
-    member_path,
-)
+from kb_check.scene.made_here import has_new_data, has_plain_operators_only, is_new
 from kb_check.script import once_for_each, once_per_script
 from kb_check.values.documented import is_related
 

@@ -25,23 +25,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES as T
+from kb_check.calls.resolved import calls_only, member_path
 from kb_check.findings import Finding
 from kb_check.rule import Rule
 from kb_check.running.background import is_called_by_others, lines_of_others
+from kb_check.running.out_of_sight import knows_all
 from kb_check.running.read_pointers import read_from
 from kb_check.running.tried import is_tried
 from kb_check.scene.emptied import empties_only, is_emptied_before
-from kb_check.scene.made_here import (
-    asked_names,
-    calls_only,
-    keywords_and_texts,
-    knows_all,
-    member_path,
-    named_words,
-    stored_names,
-    texts_but_keys,
-)
 from kb_check.script import once_for_each
+from kb_check.syntax.words import asked_names, keywords_and_texts, named_words, stored_names, texts_but_keys
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Iterator

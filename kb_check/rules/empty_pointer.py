@@ -31,30 +31,18 @@ from kb_build.symbols.api_names import ID, OBJECT, OPERATORS
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import empty_when_new, fillers
 from kb_check.calls.not_ensured import ensuring, not_ensured
+from kb_check.calls.resolved import called_operators, callee_path, member_path
 from kb_check.findings import Finding
 from kb_check.rule import Rule
+from kb_check.running.out_of_sight import is_untouched, knows_all
 from kb_check.running.read_pointers import read_pointer
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import (
-    asked_names,
-    bindings,
-    called_operators,
-    callee_path,
-    first_named,
-    first_named_but,
-    has_new_data,
-    has_plain_operators_only,
-    is_new,
-    is_untouched,
-    keywords_and_texts,
-    knows_all,
-    member_path,
-    named_words,
-    stage,
-    stored_names,
-)
+from kb_check.scene.made_here import has_new_data, has_plain_operators_only, is_new
 from kb_check.scene.set_otherwise import set_otherwise
 from kb_check.script import once_for_each, once_per_script
+from kb_check.syntax.bindings import bindings
+from kb_check.syntax.named_before import first_named, first_named_but, stage
+from kb_check.syntax.words import asked_names, keywords_and_texts, named_words, stored_names
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

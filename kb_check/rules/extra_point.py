@@ -20,10 +20,11 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import walk
 from kb_build.symbols.api_names import TYPES as T
+from kb_check.calls.resolved import callee_path
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.modes.edit_bones import bound_in
 from kb_check.rule import Rule
-from kb_check.scene.made_here import bodies, callee_path
+from kb_check.syntax.bodies import bodies
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -57,7 +57,7 @@ from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.registered.handler_lists import handler_list
 from kb_check.rule import Rule
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import once_bound
+from kb_check.syntax.bindings import once_bound
 from kb_check.values.misfits import describe
 from simworlds.counting import counted
 

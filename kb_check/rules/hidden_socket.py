@@ -38,9 +38,11 @@ from kb_check.nodes.shown_sockets import hidden_by_settings, index_beyond
 from kb_check.nodes.socket_modes import deciding, is_by_others, is_internal
 from kb_check.nodes.zone_pairing import unpaired
 from kb_check.rule import Rule
+from kb_check.running.out_of_sight import knows_all
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import is_new, knows_all, named_words
+from kb_check.scene.made_here import is_new
 from kb_check.script import once_per_script
+from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

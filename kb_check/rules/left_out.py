@@ -34,21 +34,17 @@ from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.object_data import OBJECT_DATA, data_class
 from kb_build.symbols.records import NAMES_PART
+from kb_check.calls.resolved import callee_path
 from kb_check.findings import Finding
 from kb_check.rule import Rule
+from kb_check.running.out_of_sight import knows_all
 from kb_check.running.raised import REFUSES
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import (
-    OBJECTS_NEW,
-    callee_path,
-    has_new_data,
-    has_plain_operators_only,
-    knows_all,
-    named_words,
-    once_bound,
-    places,
-)
+from kb_check.scene.made_here import OBJECTS_NEW, has_new_data, has_plain_operators_only
 from kb_check.script import once_per_script
+from kb_check.syntax.bindings import once_bound
+from kb_check.syntax.bodies import places
+from kb_check.syntax.words import named_words
 from kb_check.values.given import assigned
 
 if TYPE_CHECKING:

@@ -20,20 +20,17 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import walk
 from kb_build.symbols.api_names import TYPES as T
+from kb_check.calls.resolved import callee_path
 from kb_check.findings import Finding
 from kb_check.modes.edit_bones import bound_in, names_of_others
 from kb_check.modes.keeping import is_harmless
 from kb_check.rule import Rule
+from kb_check.running.out_of_sight import computes_names
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import (
-    alias,
-    attributes,
-    bodies,
-    callee_path,
-    computes_names,
-    making_operator,
-    reads_active,
-)
+from kb_check.scene.active_object import making_operator, reads_active
+from kb_check.syntax.bindings import alias
+from kb_check.syntax.bodies import bodies
+from kb_check.syntax.words import attributes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

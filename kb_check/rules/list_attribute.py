@@ -24,7 +24,8 @@ from kb_check.registered.handler_lists import handler_list
 from kb_check.rule import Rule
 from kb_check.running.raised import LACKS
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import once_bound, words_in_texts
+from kb_check.syntax.bindings import once_bound
+from kb_check.syntax.words import words_in_texts
 from kb_check.values.misfits import describe
 
 if TYPE_CHECKING:

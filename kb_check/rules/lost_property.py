@@ -25,11 +25,11 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import walk
 from kb_build.flow.types import Function
+from kb_check.calls.resolved import callee_path
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.registered.blender_types import MAKE_PROPERTIES
 from kb_check.registered.classes import own_classes
 from kb_check.rule import Rule
-from kb_check.scene.made_here import callee_path
 from kb_check.syntax.literals import times_bound
 
 if TYPE_CHECKING:

@@ -18,25 +18,20 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Instance
 from kb_build.symbols.api_names import TYPES as T
+from kb_check.calls.resolved import callee_path, member_path
 from kb_check.calls.sites import calls, calls_by_node
 from kb_check.findings import Finding
 from kb_check.modes.edit_bones import bound_in, names_in, surely_run
 from kb_check.modes.keeping import is_harmless, run_in
 from kb_check.rule import Rule
+from kb_check.running.out_of_sight import computes_names, knows_all
 from kb_check.running.raised import LACKS_KEY
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import (
-    alias,
-    bodies,
-    callee_path,
-    computes_names,
-    has_plain_operators_only,
-    is_new,
-    knows_all,
-    member_path,
-    texts_but_keys,
-)
+from kb_check.scene.made_here import has_plain_operators_only, is_new
 from kb_check.script import once_per_script
+from kb_check.syntax.bindings import alias
+from kb_check.syntax.bodies import bodies
+from kb_check.syntax.words import texts_but_keys
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -34,7 +34,8 @@ from kb_check.findings import Finding
 from kb_check.rule import Rule
 from kb_check.running.background import is_called_by_others, lines_of_others
 from kb_check.running.read_pointers import read_from
-from kb_check.scene.made_here import alias, asked_names
+from kb_check.syntax.bindings import alias
+from kb_check.syntax.words import asked_names
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -19,10 +19,13 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_check.calls.resolved import callee_path
 from kb_check.findings import Finding
 from kb_check.modes.edit_bones import CHANGING, edited_outside
 from kb_check.rule import Rule
-from kb_check.scene.made_here import callee_path, is_new, knows_all, named_words
+from kb_check.running.out_of_sight import knows_all
+from kb_check.scene.made_here import is_new
+from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -45,13 +45,14 @@ from kb_build.flow.types import (
 from kb_build.symbols.api_names import GROUPS, SIDES, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.records import NAMES_ITEMS
+from kb_check.calls.resolved import callee_path
 from kb_check.calls.sites import nothing_from
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
 from kb_check.running.raised import LACKS_KEY, REFUSES
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import bindings, callee_path
 from kb_check.script import once_per_script
+from kb_check.syntax.bindings import bindings
 from kb_check.syntax.literals import number
 from kb_check.values.conversions import CHANGING_ARRAYS
 from kb_check.values.documented import LENGTHS

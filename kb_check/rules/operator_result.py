@@ -22,7 +22,7 @@ from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.rule import Rule
 from kb_check.running.raised import LACKS
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import assignments, once_bound
+from kb_check.syntax.bindings import assignments, once_bound
 from kb_check.syntax.literals import times_bound
 
 if TYPE_CHECKING:

@@ -32,8 +32,8 @@ from kb_check.names.known import listed
 from kb_check.registered.properties import LAYOUT, own_properties, uses
 from kb_check.rule import Rule
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import attributes
 from kb_check.script import once_per_script
+from kb_check.syntax.words import attributes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -42,7 +42,7 @@ from kb_build.flow.types import (
 from kb_check.calls.sites import calls
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
-from kb_check.scene.made_here import bindings
+from kb_check.syntax.bindings import bindings
 from kb_check.text.brackets import bracketed
 from kb_check.values.conversions import misfit
 from kb_check.values.given import parameter_taker

@@ -19,10 +19,10 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import UNKNOWN, ClassObject, Instance, members
 from kb_build.symbols.api_names import TYPES as T
+from kb_check.calls.resolved import callee_path
 from kb_check.findings import Finding, Fix
 from kb_check.rule import Rule
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import callee_path
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:

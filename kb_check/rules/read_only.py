@@ -27,8 +27,9 @@ from kb_build.symbols.records import FREE_ON
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
 from kb_check.running.raised import LACKS
-from kb_check.scene.made_here import alias, named_words
 from kb_check.scene.settings_before import set_before
+from kb_check.syntax.bindings import alias
+from kb_check.syntax.words import named_words
 from kb_check.values.given import is_of_instance
 from kb_serve.recognise.changed_by import changed_by
 

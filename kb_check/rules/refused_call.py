@@ -37,6 +37,7 @@ from kb_build.symbols.object_data import OBJECT_DATA
 from kb_build.symbols.paths import last_name
 from kb_build.symbols.records import PAIRS
 from kb_check.calls.repeated import follows
+from kb_check.calls.resolved import callee_path
 from kb_check.calls.sites import CallSite, calls, calls_by_node
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.nodes.trees import tree_of
@@ -44,9 +45,10 @@ from kb_check.registered.classes import own_classes, plain_classes
 from kb_check.registered.order import registrations
 from kb_check.rule import Rule
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import LINKS_NEW, OBJECTS_NEW, bindings, callee_path, makers, once_bound
+from kb_check.scene.made_here import LINKS_NEW, OBJECTS_NEW, makers
 from kb_check.scene.removed import OUTSIDE_MAIN
 from kb_check.script import once_per_script
+from kb_check.syntax.bindings import bindings, once_bound
 from kb_check.syntax.literals import number
 
 if TYPE_CHECKING:

@@ -27,11 +27,11 @@ from kb_build.flow.types import ClassObject
 from kb_build.symbols.api_names import ID
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.records import RNA_TYPES
+from kb_check.calls.resolved import callee_path
 from kb_check.calls.sites import calls
 from kb_check.findings import Finding, Fix
 from kb_check.registered.classes import plain_classes
 from kb_check.rule import Rule
-from kb_check.scene.made_here import callee_path
 from kb_check.syntax.literals import functions, number, set_of, times_bound, written
 from simworlds.counting import counted
 

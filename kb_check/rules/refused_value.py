@@ -37,26 +37,21 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import usual_default
 from kb_build.symbols.paths import last_name
 from kb_build.symbols.taken import NEVER, Setting
+from kb_check.calls.resolved import called_operators, callee_path, member_path
 from kb_check.calls.sites import calls_not_ready_for
 from kb_check.findings import Finding, Fix
 from kb_check.nodes.trees import is_refused_in, tree_of
 from kb_check.rule import Rule
+from kb_check.running.out_of_sight import knows_all
 from kb_check.running.raised import REFUSES_ENUM
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import (
-    alias,
-    bindings,
-    called_operators,
-    callee_path,
-    is_named_only_behind,
-    is_new,
-    knows_all,
-    member_path,
-    named_words,
-)
+from kb_check.scene.made_here import is_new
 from kb_check.scene.opening import OPENING
 from kb_check.scene.settings_before import made_just_before, set_before
 from kb_check.script import once_per_script
+from kb_check.syntax.bindings import alias, bindings
+from kb_check.syntax.named_before import is_named_only_behind
+from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator

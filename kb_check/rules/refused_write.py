@@ -35,19 +35,20 @@ from kb_build.flow.trees import children
 from kb_build.flow.types import ClassObject, Instance, LocalClass
 from kb_build.symbols.api_names import ID, OPERATORS, STRUCT
 from kb_build.symbols.api_names import TYPES as T
+from kb_check.calls.resolved import callee_path
 from kb_check.findings import Finding
 from kb_check.registered.classes import own_classes
 from kb_check.rule import Rule
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import bindings, callee_path
 from kb_check.script import once_per_script
+from kb_check.syntax.bindings import bindings
 from kb_check.syntax.literals import times_bound
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_check.registered.classes import FunctionDefinition
     from kb_check.script import Script
+    from kb_check.syntax.definitions import FunctionDefinition
 
 _VIEW_LAYER = f"{T}ViewLayer"
 # Data-blocks that may be written to at any time.

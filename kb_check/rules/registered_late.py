@@ -28,15 +28,16 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES as T
+from kb_check.calls.resolved import callee_path
 from kb_check.findings import Finding
 from kb_check.registered.classes import own_classes
 from kb_check.registered.order import registrations, statements
 from kb_check.rule import Rule
 from kb_check.running.computing import NAMESPACES, RUNNING, computing
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import callee_path, named_words
 from kb_check.script import once_per_script
 from kb_check.syntax.literals import times_bound, written
+from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -25,14 +25,16 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Instance, Sequence, Tuple, Type
 from kb_build.symbols.api_names import TYPES as T
+from kb_check.calls.resolved import member_path
 from kb_check.calls.sites import calls_by_node
 from kb_check.findings import Finding
 from kb_check.modes.edit_bones import surely_run
 from kb_check.rule import Rule
+from kb_check.running.out_of_sight import computes_names
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import bodies, computes_names, member_path
 from kb_check.scene.removed import Removed, may_remove
 from kb_check.script import once_per_script
+from kb_check.syntax.bodies import bodies
 from kb_check.syntax.literals import times_bound
 
 if TYPE_CHECKING:

@@ -16,8 +16,8 @@ from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.paths import item_of, split_path
 from kb_check.findings import Edit, Fix, Span
 from kb_check.names.uses import are_refused
-from kb_check.scene.made_here import bindings
 from kb_check.script import once_per_script
+from kb_check.syntax.bindings import bindings
 from kb_check.syntax.literals import written
 from kb_check.values.conversions import misfit
 from kb_check.values.given import assigned, property_taker

@@ -20,7 +20,9 @@ from kb_build.symbols.flags import usual_default
 from kb_build.symbols.lines import switches
 from kb_check.findings import Finding
 from kb_check.rule import Rule
-from kb_check.scene.made_here import computes_names, is_new, named_words
+from kb_check.running.out_of_sight import computes_names
+from kb_check.scene.made_here import is_new
+from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -32,6 +32,7 @@ from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.object_data import OBJECT_DATA
 from kb_build.symbols.records import SCALAR_TYPES
+from kb_check.calls.resolved import callee_path, member_path
 from kb_check.calls.sites import nothing_from, other_way
 from kb_check.findings import Finding, Fix
 from kb_check.nodes.shown_sockets import socket_classes
@@ -39,8 +40,9 @@ from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.running.raised import LACKS
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import bindings, callee_path, member_path, words_in_texts
 from kb_check.syntax.annotated_parameters import ONE_IS_WRONG, is_annotated
+from kb_check.syntax.bindings import bindings
+from kb_check.syntax.words import words_in_texts
 from kb_serve.recognise.names.elements import Elsewhere, elsewhere
 from kb_serve.recognise.names.holders import by_what_holds_it, of_collection
 

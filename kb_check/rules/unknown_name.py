@@ -19,11 +19,12 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import LOST_MODULES, UNLOADED
+from kb_check.calls.resolved import member_path
 from kb_check.findings import Finding
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
+from kb_check.running.out_of_sight import knows_all
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import knows_all, member_path
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

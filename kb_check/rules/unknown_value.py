@@ -31,9 +31,9 @@ from kb_check.findings import Finding
 from kb_check.nodes.trees import is_refused_in, tree_of
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
+from kb_check.running.out_of_sight import knows_all
 from kb_check.running.raised import REFUSES, REFUSES_ENUM
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import knows_all
 from kb_check.script import once_per_script
 from kb_check.syntax.literals import written
 from kb_check.values.given import assigned, class_values

@@ -20,13 +20,17 @@ from kb_build.flow.facts import SET_ACTIVE
 from kb_build.flow.types import Instance
 from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.api_names import TYPES as T
+from kb_check.calls.resolved import callee_path, member_path
 from kb_check.calls.sites import calls_by_node
 from kb_check.findings import Finding
 from kb_check.modes.edit_bones import bound_in, names_of_others, surely_run
 from kb_check.modes.keeping import is_harmless, run_in
 from kb_check.rule import Rule
+from kb_check.running.out_of_sight import computes_names
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import OBJECTS_NEW, bindings, bodies, callee_path, computes_names, member_path
+from kb_check.scene.made_here import OBJECTS_NEW
+from kb_check.syntax.bindings import bindings
+from kb_check.syntax.bodies import bodies
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -16,10 +16,12 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.api_names import TYPES as T
+from kb_check.calls.resolved import member_path
 from kb_check.calls.sites import calls, giving
 from kb_check.findings import Finding, Fix
 from kb_check.rule import Rule
-from kb_check.scene.made_here import attributes, computes_names, member_path, named_words
+from kb_check.running.out_of_sight import computes_names
+from kb_check.syntax.words import attributes, named_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -16,10 +16,10 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import UNKNOWN, Plain, Tuple, members
+from kb_check.calls.resolved import member_path
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import member_path
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

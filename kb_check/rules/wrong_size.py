@@ -21,10 +21,10 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_check.calls.resolved import callee_path
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import callee_path
 from kb_check.syntax.literals import number
 from kb_check.values.buffers import buffer_of_rows, short_buffer
 from kb_check.values.mathutils_sizes import (

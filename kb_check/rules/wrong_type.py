@@ -41,14 +41,18 @@ from kb_build.symbols.api_names import GROUPS, ID, NODE, OBJECT, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.object_data import OBJECT_DATA
 from kb_build.symbols.paths import last_name
+from kb_check.calls.resolved import callee_path
 from kb_check.calls.sites import nothing_from, other_way
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.registered.properties import given_to_own
 from kb_check.rule import Rule
+from kb_check.running.out_of_sight import knows_all
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import callee_path, is_new, knows_all, named_words, once_bound
+from kb_check.scene.made_here import is_new
 from kb_check.syntax.annotated_parameters import ONE_IS_WRONG, is_annotated
+from kb_check.syntax.bindings import once_bound
 from kb_check.syntax.literals import items, set_of
+from kb_check.syntax.words import named_words
 from kb_check.text.brackets import bracketed
 from kb_check.values.buffers import wide_buffer
 from kb_check.values.conversions import misfit

@@ -18,6 +18,7 @@ from kb_build.flow.trees import APART, called_name, children, run_with, walk
 from kb_build.flow.types import UNKNOWN, LocalClass, LocalFunction, literal
 from kb_check.running.computing import RUNNING, STORING
 from kb_check.running.context_managers import passes_errors
+from kb_check.syntax.definitions import FunctionDefinition
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from kb_build.flow.analysis import Analysis
     from kb_build.flow.types import Type
 
-_Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 # Names that can give Blender's API more than the text shows.
 _BRINGING = RUNNING | STORING | frozenset(
@@ -57,7 +57,7 @@ class RunReach:
         self._leaving = _leaving(tree)
         self._sure: set[ast.AST] = {tree}
         self._bodies: list[Sequence[ast.stmt]] = [tree.body]
-        self._called: set[_Function] = set()
+        self._called: set[FunctionDefinition] = set()
         self._parts: dict[ast.AST, list[_Part]] = {}
         while self._bodies:
             self._block(self._bodies.pop())
@@ -157,7 +157,8 @@ class RunReach:
         if self._analysis is not None and isinstance(kind, LocalClass):
             body = self._analysis.classes[kind.number].body
             return next(
-                (item for item in body if isinstance(item, _Function) and item.name == "__init__"), None
+                (item for item in body if isinstance(item, FunctionDefinition) and item.name == "__init__"),
+                None,
             )
         return self._functions.get(node.id) if isinstance(node, ast.Name) else None
 
@@ -214,9 +215,9 @@ def _leaving(tree: ast.Module) -> set[ast.AST]:
     return returning | breaking
 
 
-def _plain_functions(tree: ast.Module) -> dict[str, _Function]:
+def _plain_functions(tree: ast.Module) -> dict[str, FunctionDefinition]:
     """The functions of the module itself whose name is given once, by name."""
-    found: dict[str, list[_Function | None]] = {}
+    found: dict[str, list[FunctionDefinition | None]] = {}
     for node in walk(tree):
         match node:
             case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):

@@ -5,8 +5,10 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_check.calls.resolved import member_path
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import asked_names, bindings, member_path
+from kb_check.syntax.bindings import bindings
+from kb_check.syntax.words import asked_names
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator

@@ -7,9 +7,9 @@ import builtins
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import UNKNOWN, Builtin, Tuple, catches, members
+from kb_check.calls.resolved import callee_path
 from kb_check.running.context_managers import passes_errors
 from kb_check.running.line_ranges import LineRanges
-from kb_check.scene.made_here import callee_path
 from kb_check.script import once_for_each
 
 if TYPE_CHECKING:

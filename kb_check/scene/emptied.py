@@ -7,8 +7,10 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import children, walk
-from kb_check.scene.made_here import callee_path, owners, places
+from kb_check.calls.resolved import callee_path
 from kb_check.script import once_per_script
+from kb_check.syntax.bodies import owners, places
+from kb_check.syntax.definitions import FunctionDefinition
 from kb_check.syntax.literals import functions
 
 if TYPE_CHECKING:
@@ -17,7 +19,6 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 EMPTYING = frozenset({"bpy.ops.wm.read_factory_settings", "bpy.ops.wm.read_homefile"})
-_Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def is_emptied_before(script: Script, statement: ast.stmt) -> bool:
@@ -73,7 +74,7 @@ def _surely_come_to(body: list[ast.stmt]) -> Iterator[ast.stmt]:
             return
 
 
-def _standing(script: Script, statement: ast.stmt) -> tuple[bool, _Function | None]:
+def _standing(script: Script, statement: ast.stmt) -> tuple[bool, FunctionDefinition | None]:
     """Whether a statement stands behind what empties the file, and if not, the function that it is in."""
     here: ast.AST | None = statement
     while isinstance(here, ast.stmt) and here in places(script):
@@ -81,7 +82,7 @@ def _standing(script: Script, statement: ast.stmt) -> tuple[bool, _Function | No
         if _first_emptying(script).get(body[0], place) < place:
             return True, None
         here = owners(script)[here]
-        if isinstance(here, _Function):
+        if isinstance(here, FunctionDefinition):
             return False, here
     return False, None
 
@@ -124,12 +125,12 @@ def _called_after(script: Script) -> frozenset[ast.AST]:
     return frozenset(found)
 
 
-def _callers(script: Script, named: list[ast.Name]) -> list[_Function] | None:
+def _callers(script: Script, named: list[ast.Name]) -> list[FunctionDefinition] | None:
     """The functions in which another one is called where the file may not be empty yet.
 
     None where it is never called, used for more than that, or called so in no function.
     """
-    found: list[_Function] = []
+    found: list[FunctionDefinition] = []
     for node in named:
         call = script.calls_of.get(node)
         statement = _around(script).get(call) if call else None

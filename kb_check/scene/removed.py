@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.flow.types import Collection, Instance
 from kb_build.symbols.api_names import ID
 from kb_build.symbols.api_names import TYPES as T
+from kb_check.calls.resolved import callee_path
 from kb_check.calls.sites import calls_by_node
 from kb_check.modes.edit_bones import bound_in, names_in, names_of_others
-from kb_check.scene.made_here import callee_path
 
 if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol

@@ -12,8 +12,10 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import walk
+from kb_check.calls.resolved import callee_path
 from kb_check.calls.sites import calls
-from kb_check.scene.made_here import attributes, bindings, callee_path
+from kb_check.syntax.bindings import bindings
+from kb_check.syntax.words import attributes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -17,17 +17,13 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import walk
 from kb_build.symbols.api_names import OPERATORS
+from kb_check.calls.resolved import called_operators, callee_path
 from kb_check.calls.sites import calls_by_node
-from kb_check.scene.made_here import (
-    attributes,
-    bindings,
-    called_operators,
-    callee_path,
-    making_operator,
-    places,
-    reads_active,
-)
+from kb_check.scene.active_object import making_operator, reads_active
 from kb_check.script import once_for_each
+from kb_check.syntax.bindings import bindings
+from kb_check.syntax.bodies import places
+from kb_check.syntax.words import attributes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -12,11 +12,11 @@ from kb_check.syntax.literals import bound_names
 
 if TYPE_CHECKING:
     from kb_check.script import Script
+    from kb_check.syntax.definitions import FunctionDefinition
 
 ONE_IS_WRONG = "the annotation or the use is wrong"
 _DEEPEST = 6  # elements of elements
 _WORD = re.compile(r"\w+")
-_Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def is_annotated(script: Script, node: ast.expr, cls: str) -> bool:
@@ -76,12 +76,12 @@ def _annotation_around(script: Script, node: ast.Name) -> frozenset[str]:
 
 
 @once_for_each
-def _bound_in(_script: Script, function: _Function) -> list[str]:
+def _bound_in(_script: Script, function: FunctionDefinition) -> list[str]:
     """The names that a function binds, its parameters among them, each as often as it does."""
     return [name for part in walk(function) if part is not function for name in bound_names(part)]
 
 
-def _parameters(function: _Function) -> dict[str, ast.arg]:
+def _parameters(function: FunctionDefinition) -> dict[str, ast.arg]:
     given = function.args
     return {argument.arg: argument for argument in (*given.posonlyargs, *given.args, *given.kwonlyargs)}
 

@@ -21,8 +21,10 @@ from kb_build.flow.api import ARRAY
 from kb_build.flow.facts import ELEMENT
 from kb_build.flow.types import FLOAT, UNKNOWN, Collection, Instance, Sequence, Tuple, Union
 from kb_build.symbols.api_names import COLLECTION
-from kb_check.scene.made_here import attributes, callee_path, once_bound
+from kb_check.calls.resolved import callee_path
+from kb_check.syntax.bindings import once_bound
 from kb_check.syntax.literals import number, times_bound
+from kb_check.syntax.words import attributes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

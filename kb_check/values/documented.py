@@ -26,7 +26,7 @@ from kb_build.symbols.api_names import STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import last_name
 from kb_check.calls.sites import calls_by_node
-from kb_check.scene.made_here import bindings, once_bound
+from kb_check.syntax.bindings import bindings, once_bound
 from kb_check.syntax.literals import items, written
 from kb_check.values.misfits import Misfit, describe, shown
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_check.scene.made_here import bindings, callee_path, member_path, named_words
+from kb_check.calls.resolved import callee_path, member_path
 from kb_check.script import once_for_each
+from kb_check.syntax.bindings import bindings
 from kb_check.syntax.literals import number, written
+from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
     from kb_check.script import Script

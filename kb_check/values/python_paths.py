@@ -5,8 +5,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_check.scene.made_here import bindings
 from kb_check.script import once_per_script
+from kb_check.syntax.bindings import bindings
 from kb_check.syntax.literals import times_bound
 
 if TYPE_CHECKING:

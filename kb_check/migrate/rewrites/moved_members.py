@@ -6,7 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_check.migrate.rewrite import Rewrite
-from kb_check.scene.made_here import attributes
+from kb_check.syntax.words import attributes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
