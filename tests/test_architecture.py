@@ -1,10 +1,11 @@
-"""Who may import whom, directly and through others. The rules are tables; each is shown to bite on a broken tree."""
+"""Who may import whom, directly and through others, and how much stands in a folder. Each rule is shown to bite."""
 
 from __future__ import annotations
 
 import ast
 import subprocess
 import sys
+from collections import Counter
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING
@@ -380,6 +381,52 @@ def rebuilders(repo: Path) -> list[str]:
     return names
 
 
+# What the wheel brings.
+PRODUCT = ("simworlds", "kb_build", "kb_serve", "kb_check", "agents", "bench")
+MOST_MODULES = 16
+# Lists: each module is one more of a kind that people add to.
+LISTS = frozenset(
+    (  # noqa: SIM905
+        "agents/blender/tools bench/references/inside/scenes kb_check/migrate/rewrites kb_check/rules "
+        "kb_serve/recognise/messages"
+    ).split()
+)
+# Folders with more modules, and how many they may have. No folder is added here, and no number is raised.
+CROWDED = {
+    "agents/blender": 21,
+    "agents/blender/inside/attached": 23,
+    "agents/blender/inside/state": 19,
+    "agents/loop": 29,
+    "agents/protocol/judging": 17,
+    "kb_build/blender/inside": 30,
+    "kb_build/flow": 42,
+    "kb_serve/answer": 30,
+    "kb_serve/answer/steps": 23,
+    "kb_serve/recognise/names": 21,
+    "simworlds/llm": 22,
+    "simworlds/sandbox": 22,
+}
+
+
+def sizes(repo: Path) -> Counter[str]:
+    """Folder of the product → how many modules stand in it."""
+    return Counter(
+        path.parent.relative_to(repo).as_posix()
+        for module, (path, _) in modules(repo).items()
+        if any(below(module, part) for part in PRODUCT) and not path.name.startswith("__")
+    )
+
+
+def breaches_of_order(repo: Path) -> Iterator[str]:
+    """Folders with more modules than they may have, and folders that need no more than all others any longer."""
+    for folder, size in sorted(sizes(repo).items()):
+        most = CROWDED.get(folder, MOST_MODULES)
+        if size > most and folder not in LISTS:
+            yield f"{folder} has {size} modules, and at most {most} are allowed"
+        if folder in CROWDED and size <= MOST_MODULES:
+            yield f"{folder} has {size} modules, and needs no exception"
+
+
 def write(repo: Path, files: Mapping[str, str]) -> None:
     for name, code in files.items():
         path = repo / name
@@ -389,6 +436,11 @@ def write(repo: Path, files: Mapping[str, str]) -> None:
 
 def test_no_module_imports_or_reaches_what_it_must_not() -> None:
     assert breaches(REPO) == []
+
+
+def test_no_folder_has_more_modules_than_a_reader_looks_through() -> None:
+    assert list(breaches_of_order(REPO)) == []
+    assert sizes(REPO).keys() >= LISTS | CROWDED.keys()
 
 
 def test_no_modules_import_each_other_in_a_circle() -> None:
@@ -518,6 +570,25 @@ def test_a_circle_is_seen(tmp_path: Path, first: str, second: str) -> None:
 def test_what_is_allowed_is_let_through(tmp_path: Path, path: str, code: str) -> None:
     write(tmp_path, {"bench/audit/inside/b.py": "", "bench/audit/inside/__init__.py": "", path: code})
     assert breaches(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    ("folder", "size", "breach"),
+    [
+        ("kb_check/x", 16, []),
+        ("kb_check/x", 17, ["kb_check/x has 17 modules, and at most 16 are allowed"]),
+        ("kb_check", 17, ["kb_check has 17 modules, and at most 16 are allowed"]),
+        ("kb_check/rules", 100, []),
+        ("kb_check/rules/x", 17, ["kb_check/rules/x has 17 modules, and at most 16 are allowed"]),
+        ("measurements", 100, []),
+        ("simworlds/llm", 22, []),
+        ("simworlds/llm", 23, ["simworlds/llm has 23 modules, and at most 22 are allowed"]),
+        ("simworlds/llm", 16, ["simworlds/llm has 16 modules, and needs no exception"]),
+    ],
+)
+def test_a_crowded_folder_is_seen(tmp_path: Path, folder: str, size: int, breach: list[str]) -> None:
+    write(tmp_path, {f"{folder}/{name}.py": "" for name in ("__init__", *(f"a{n}" for n in range(size)))})
+    assert list(breaches_of_order(tmp_path)) == breach
 
 
 def test_a_second_way_into_the_build_is_seen(tmp_path: Path) -> None:
