@@ -16,15 +16,16 @@ if TYPE_CHECKING:
 
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
+    top = tmp_path / "project"
     for name in (
         "pyproject.toml", "loose.py", "note.ipynb", "text.txt", ".hidden.py", ".git/a.py", "env/pyvenv.cfg", "env/a.py",
         "node_modules/a.py", "__pycache__/a.py", "addon/__init__.py", "addon/a.py", "addon/sub/b.py", "addon/c.ipynb",
         "extension/blender_manifest.toml", "extension/d.py", "scripts/e.py", "scripts/f.py",
     ):  # fmt: skip
-        path = tmp_path / name
+        path = top / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.touch()
-    return tmp_path
+    return top
 
 
 def groups(top: Path, *paths: str, exclude: tuple[str, ...] = ()) -> list[list[str]]:
