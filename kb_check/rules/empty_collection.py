@@ -3,6 +3,8 @@
 ```python
 mesh = bpy.data.meshes.new("Sheet")
 mesh.materials[0] = material  # reported: mesh.materials.append(material) adds one
+bpy.ops.mesh.primitive_cube_add()
+bpy.context.object.material_slots[0].material = material  # reported
 ```
 
 Not reported: things that the script did not make itself; scripts that do anything else with a collection of the name,
@@ -28,7 +30,14 @@ from kb_check.modes.edit_bones import edited_outside
 from kb_check.rule import Rule
 from kb_check.running.out_of_sight import knows_all
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import has_new_data, has_plain_operators_only, is_new
+from kb_check.scene.made_here import (
+    MESH,
+    has_new_data,
+    has_plain_operators_only,
+    is_new,
+    is_primitive,
+    is_primitive_mesh,
+)
 from kb_check.script import once_for_each, once_per_script
 from kb_check.values.documented import is_related
 
@@ -46,6 +55,22 @@ _TAKING = frozenset({"link", "new"})
 _ADDING = ("append", "new", "add", "link")
 # Collections that Blender fills as another one of the same thing is filled, with the stem of its name.
 _FILLED_BESIDE = {"particle_systems": {stem("modifiers")}}
+# What the operators that make meshes fill of them.
+_OF_PRIMITIVES = frozenset(
+    {
+        "attributes",
+        "corner_normals",
+        "edges",
+        "loop_triangle_polygons",
+        "loop_triangles",
+        "loops",
+        "polygon_normals",
+        "polygons",
+        "uv_layers",
+        "vertex_normals",
+        "vertices",
+    }
+)
 _TREE = f"{T}NodeTree"
 _WORD = re.compile(r"\w+")
 _SCENES = frozenset({f"{T}Context.collection", f"{T}Scene.collection"})
@@ -57,8 +82,7 @@ def _check(script: Script) -> Iterator[Finding]:
         if (
             symbol
             and knows_all(script)
-            and is_new(script, collection.value)
-            and (symbol.owner != OBJECT or has_new_data(script, collection.value))
+            and _is_made_empty(script, symbol, collection.value)
             and not is_tried(script, node)
             and node not in edited_outside(script)
             and not _may_be_filled(script, symbol.path)
@@ -67,6 +91,15 @@ def _check(script: Script) -> Iterator[Finding]:
             yield Finding(
                 RULE.id, "warning", script.span(node), f"{message}{_adding(script, symbol)}.", symbol.path
             )
+
+
+def _is_made_empty(script: Script, symbol: Symbol, owner: ast.expr) -> bool:
+    """Whether the script surely has made the owner of a collection, and without anything in that."""
+    if symbol.owner == OBJECT and is_primitive(script, owner):
+        return True
+    if symbol.owner == MESH and symbol.name not in _OF_PRIMITIVES and is_primitive_mesh(script, owner):
+        return True
+    return is_new(script, owner) and (symbol.owner != OBJECT or has_new_data(script, owner))
 
 
 @once_per_script

@@ -24,12 +24,12 @@ import math
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import READ_ACTIVE
 from kb_build.flow.types import Instance
 from kb_build.index.analysis import stem, words
 from kb_build.symbols.api_names import ID, OBJECT, OPERATORS
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import empty_when_new, fillers
+from kb_build.symbols.paths import last_name
 from kb_check.calls.not_ensured import ensuring, not_ensured
 from kb_check.calls.resolved import called_operators, callee_path, member_path
 from kb_check.findings import Finding
@@ -37,7 +37,13 @@ from kb_check.rule import Rule
 from kb_check.running.out_of_sight import is_untouched, knows_all
 from kb_check.running.read_pointers import read_pointer
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import has_new_data, has_plain_operators_only, is_new
+from kb_check.scene.made_here import (
+    has_new_data,
+    has_plain_operators_only,
+    is_new,
+    is_primitive,
+    is_primitive_mesh,
+)
 from kb_check.scene.set_otherwise import set_otherwise
 from kb_check.script import once_for_each, once_per_script
 from kb_check.syntax.bindings import bindings
@@ -54,7 +60,6 @@ if TYPE_CHECKING:
 _ANIMATING = re.compile(r"keyframe_insert|driver_add|bpy\.ops\.(anim|nla|action|graph|pose|poselib)\.")
 # Operators that hand on what other things have.
 _COPYING = re.compile(r"copy|link|join|quick|transfer|preset|paste|append|undo|duplicate")
-_PRIMITIVE = re.compile(r"bpy\.ops\.mesh\.primitive_\w+_add")
 _OF_DATA = re.compile(r"bpy\.data\.\w+\.(\w+)\(")
 _WORD = re.compile(r"\w+")
 _GENERAL = frozenset({"object", "mesh", "scene", "anim"})  # modules whose operators fill many things
@@ -113,7 +118,7 @@ def _only_with(script: Script, symbol: Symbol, node: ast.expr) -> str:
     data = kind.trait("data") if isinstance(kind, Instance) and kind.sure else None
     if isinstance(data, Instance) and data.sure and data.cls != ID:
         return "" if script.api.descends(data.cls, cls) else cls
-    return cls if _is_primitive(script, node) else ""
+    return cls if is_primitive(script, node) else ""
 
 
 def _filler(script: Script, symbol: Symbol, pointer: ast.Attribute, place: ast.expr) -> str:
@@ -124,7 +129,7 @@ def _filler(script: Script, symbol: Symbol, pointer: ast.Attribute, place: ast.e
     if not _is_never_assigned(script, symbol.path) or not _is_made(script, pointer.value):
         return ""
     if symbol.owner == OBJECT:
-        is_new_mesh = _is_primitive(script, pointer.value) or has_new_data(script, pointer.value)
+        is_new_mesh = is_primitive(script, pointer.value) or has_new_data(script, pointer.value)
         if not is_new_mesh or "data" in stored_names(script):
             return ""
     obj = ast.unparse(pointer.value) if isinstance(pointer.value, ast.Name) else ""
@@ -146,6 +151,8 @@ def _is_never_assigned(script: Script, path: str) -> bool:
     if symbol.name in asked_names(script) or symbol.name in stored_names(script):
         return False
     if symbol.name in keywords_and_texts(script):
+        return False
+    if any(symbol.name in words(last_name(path)) for path in called_operators(script)):
         return False
     own = {stem(word) for word in words(symbol.name)} - {_ACTIVE_ONE}
     is_active = symbol.name.startswith(_ACTIVE_ONE)
@@ -231,43 +238,13 @@ def _computes_kinds(script: Script) -> bool:
 
 def _is_made(script: Script, node: ast.expr) -> bool:
     """Whether the script has surely made a thing: by ``new``, or as the active object by the operators of meshes."""
+    if is_primitive_mesh(script, node):
+        return True
     if isinstance(node, ast.Name):
         values = bindings(script).get(node.id, [])
         if len(values) == 1 and isinstance(values[0], ast.Attribute):
-            return _is_active(script, values[0])
-    return is_new(script, node) or (isinstance(node, ast.Attribute) and _is_active(script, node))
-
-
-def _is_primitive(script: Script, node: ast.expr) -> bool:
-    """Whether a thing surely is an object that an operator of meshes has just made."""
-    if isinstance(node, ast.Name):
-        values = bindings(script).get(node.id, [])
-        node = values[0] if len(values) == 1 and values[0] else node
-    return isinstance(node, ast.Attribute) and _is_active(script, node)
-
-
-def _is_active(script: Script, node: ast.Attribute) -> bool:
-    row = script.analysis.resolutions.get(node)
-    if row is None or not READ_ACTIVE.issuperset(row.symbols) or "active" in named_words(script):
-        return False
-    before = _first_primitive(script) <= (node.lineno, node.col_offset)
-    return before and not _computes_members(script) and has_plain_operators_only(script)
-
-
-@once_per_script
-def _first_primitive(script: Script) -> tuple[float, float]:
-    """Where the first call of an operator ends that makes a mesh; behind everything for none."""
-    made = [
-        (row.node.end_lineno or 0, row.node.end_col_offset or 0)
-        for row in script.resolutions("call")
-        if isinstance(row.node, ast.Call) and any(map(_PRIMITIVE.fullmatch, row.symbols))
-    ]
-    return min(made, default=(math.inf, math.inf))
-
-
-@once_per_script
-def _computes_members(script: Script) -> bool:
-    return any(node.id == "getattr" for node in script.all(ast.Name))
+            return is_primitive(script, node)
+    return is_new(script, node) or is_primitive(script, node)
 
 
 RULE = Rule("empty-pointer", "warning", "Something read from what is None on a new thing", _check)

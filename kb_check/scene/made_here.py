@@ -3,21 +3,37 @@
 from __future__ import annotations
 
 import ast
+import math
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import made_by
+from kb_build.flow.types import Instance
 from kb_build.symbols.api_names import ID, OBJECT
 from kb_build.symbols.flags import fillers
 from kb_check.calls.resolved import called_operators, callee_path, calls_only
+from kb_check.scene.active_object import reads_active
 from kb_check.script import once_for_each, once_per_script
 from kb_check.syntax.bindings import bindings
+from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
+    from kb_build.flow.types import Type
     from kb_check.script import Script
 
 _DEEPEST = 8
-# Operators that change nothing but the active object, which they leave as new as it is.
-_PLAIN = re.compile(r"bpy\.ops\.(mesh\.primitive_\w+_add|object\.(select_all|shade_\w+|delete)|wm\.read_\w+)")
+# Operators after which everything that was there has as much as before, and as little.
+_PLAIN = re.compile(
+    r"bpy\.ops\.("
+    r"(mesh|curve|surface)\.primitive_\w+_add"
+    r"|object\.(armature|camera|effector|empty|grease_pencil|light|lightprobe|metaball|speaker|text|volume)_add"
+    r"|object\.(delete|select_all|shade_flat|shade_smooth|origin_set|transform_apply|parent_clear)"
+    r"|transform\.(translate|rotate|resize)"
+    r"|wm\.(read_\w+|save_as_mainfile|save_mainfile)"
+    r")"
+)
+_PRIMITIVE = re.compile(r"bpy\.ops\.mesh\.primitive_\w+_add")
+MESH = "bpy.types.Mesh"
 OBJECTS_NEW, LINKS_NEW = "bpy.types.BlendDataObjects.new", "bpy.types.NodeLinks.new"
 
 
@@ -83,6 +99,61 @@ def _is_made_with_new_data(script: Script, node: ast.expr | None, depth: int) ->
 def has_plain_operators_only(script: Script) -> bool:
     """Whether all operators that the script calls leave things that it made as they are."""
     return calls_only(script, _PLAIN)
+
+
+def is_primitive(script: Script, node: ast.expr) -> bool:
+    """Whether a thing surely is an object that an operator of meshes has just made."""
+    if isinstance(node, ast.Name):
+        values = bindings(script).get(node.id, [])
+        node = values[0] if len(values) == 1 and values[0] else node
+    return isinstance(node, ast.Attribute) and _is_active_primitive(script, node)
+
+
+def is_primitive_mesh(script: Script, node: ast.expr) -> bool:
+    """Whether a thing surely is the mesh of an object that an operator has just made."""
+    if isinstance(node, ast.Name):
+        values = bindings(script).get(node.id, [])
+        node = values[0] if len(values) == 1 and values[0] else node
+    return isinstance(node, ast.Attribute) and node.attr == "data" and is_primitive(script, node.value)
+
+
+def _is_active_primitive(script: Script, node: ast.Attribute) -> bool:
+    """Whether an expression reads the active object where that surely is a mesh that an operator has made.
+
+    Behind the first operator that makes an object, plain operators leave none active but those that they make.
+    """
+    if not reads_active(script, node) or "active" in named_words(script):
+        return False
+    is_made = _first_made(script) <= (node.lineno, node.col_offset)
+    is_sure = is_made and not _computes_members(script) and has_plain_operators_only(script)
+    return is_sure and (_makes_meshes_only(script) or _is_mesh_object(script.type_of(node)))
+
+
+def _is_mesh_object(kind: Type | None) -> bool:
+    data = kind.trait("data") if isinstance(kind, Instance) and kind.sure else None
+    return isinstance(data, Instance) and data.sure and data.cls == MESH
+
+
+@once_per_script
+def _makes_meshes_only(script: Script) -> bool:
+    making = filter(made_by, called_operators(script))
+    return all(map(_PRIMITIVE.fullmatch, making))
+
+
+@once_per_script
+def _first_made(script: Script) -> tuple[float, float]:
+    """Where the first call of an operator ends that makes an object; behind everything for none."""
+    made = [
+        (row.node.end_lineno or 0, row.node.end_col_offset or 0)
+        for row in script.resolutions("call")
+        if isinstance(row.node, ast.Call) and any(map(made_by, row.symbols))
+    ]
+    return min(made, default=(math.inf, math.inf))
+
+
+@once_per_script
+def _computes_members(script: Script) -> bool:
+    return any(node.id == "getattr" for node in script.all(ast.Name))
 
 
 @once_for_each

@@ -118,3 +118,93 @@ def test_what_an_object_has_of_its_older_data_is_left_alone(rule_checker: Checke
     older = "bpy.data.objects.new('p', bpy.data.meshes['x']).{}[0].name"
     assert not found(rule_checker, older.format("material_slots"))
     assert not found(rule_checker, older.format("vertex_groups"))
+
+
+# What the operators make
+
+_MADE_BY_OPERATOR = """\
+import bpy
+bpy.ops.mesh.primitive_cube_add()
+ob = bpy.context.active_object
+mesh = ob.data
+"""
+# Each leaves what was there before with as much as it had.
+_PLAIN = """\
+bpy.ops.object.light_add(type='AREA', location=(0, 0, 4))
+bpy.ops.object.camera_add(location=(7, -7, 5))
+bpy.ops.object.empty_add()
+bpy.ops.object.text_add()
+bpy.ops.object.armature_add()
+bpy.ops.object.metaball_add()
+bpy.ops.object.volume_add()
+bpy.ops.object.speaker_add()
+bpy.ops.object.lightprobe_add(type='SPHERE')
+bpy.ops.object.grease_pencil_add(type='STROKE')
+bpy.ops.object.effector_add(type='FORCE')
+bpy.ops.curve.primitive_bezier_circle_add()
+bpy.ops.surface.primitive_nurbs_surface_torus_add()
+bpy.ops.mesh.primitive_monkey_add()
+bpy.ops.mesh.primitive_torus_add()
+ob.select_set(True)
+bpy.ops.object.shade_flat()
+bpy.ops.object.shade_smooth()
+bpy.ops.object.parent_clear()
+bpy.ops.object.origin_set(type='ORIGIN_GEOMETRY')
+bpy.ops.transform.translate(value=(0, 0, 1))
+bpy.ops.transform.rotate(value=1.0)
+bpy.ops.transform.resize(value=(2, 2, 2))
+bpy.ops.wm.save_as_mainfile(filepath='plain.blend')
+"""
+_OF_PRIMITIVES = """\
+ob.material_slots[0].material = None
+ob.data.materials[0] = None
+mesh.materials[0].name
+ob.modifiers[0].name = 'x'
+ob.constraints['Track To'].influence = 0.5
+ob.vertex_groups['Pin'].name = 'x'
+ob.particle_systems[0].name = 'x'
+mesh.color_attributes[0].name = 'x'
+mesh.uv_layers[0].name = 'x'
+mesh.vertices[0].co = (0, 0, 0)
+mesh.polygons[0].use_smooth = True
+mesh.edges[0].use_seam = True
+"""
+
+
+def test_what_operators_make_has_no_elements_either(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = _OF_PRIMITIVES.splitlines()
+    before = f"{_MADE_BY_OPERATOR}{_PLAIN}"
+    outcomes = run_statements(tmp_path, [*before.splitlines(), *lines])
+    assert not any(error for error, *_ in outcomes[: -len(lines)])
+    refused = [line for line, (error, *_) in zip(lines, outcomes[-len(lines) :], strict=True) if error]
+    told = [line for line in lines if rule_checker.check(f"{before}{line}\n", rules=["empty-collection"])]
+    assert told == refused
+    assert len(refused) == 8
+
+
+@pytest.mark.parametrize(
+    "before",
+    [
+        "bpy.ops.object.shade_auto_smooth()\n",
+        "bpy.ops.object.modifier_add(type='SUBSURF')\n",
+        "bpy.ops.object.quick_fur()\n",
+        "bpy.context.view_layer.objects.active = bpy.data.objects['Cube']\n",
+        "if ob.modifiers:\n    pass\n",
+    ],
+)
+def test_what_may_fill_what_an_operator_made_is_heeded(rule_checker: Checker, before: str) -> None:
+    def told(script: str) -> bool:
+        return bool(rule_checker.check(script, rules=["empty-collection"]))
+
+    made = "import bpy\nbpy.ops.mesh.primitive_cube_add()\n"
+    read = "bpy.context.object.modifiers[0].name\n"
+    assert told(f"{made}ob = bpy.context.object\n{read}")
+    assert not told(f"{made}ob = bpy.context.object\n{before}{read}")
+
+
+def test_an_active_object_of_another_kind_is_left_alone(rule_checker: Checker) -> None:
+    made = "import bpy\nbpy.ops.mesh.primitive_cube_add()\nbpy.ops.object.grease_pencil_add(type='STROKE')\n"
+    read = "bpy.context.object.material_slots[0].name\n"
+    assert not rule_checker.check(f"{made}{read}", rules=["empty-collection"])
+    posed = made.replace("grease_pencil_add(type='STROKE')", "armature_add()")
+    assert not rule_checker.check(f"{posed}bpy.context.object.pose.bones\n", rules=["empty-pointer"])
