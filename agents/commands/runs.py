@@ -275,6 +275,7 @@ def _begin(asked: dict[str, Any], given: dict[str, Any]) -> None:
 
     from agents.loop.options import Options  # noqa: PLC0415
     from agents.loop.session import begin  # noqa: PLC0415
+    from simworlds.schemas.faults import every_fault  # noqa: PLC0415
 
     names = ("blender", "blender_exe", "read", "assets", "sandbox", "render_minutes", "samples")
     asked = asked | {name: given[name] for name in names if given.get(name) is not None}
@@ -282,8 +283,7 @@ def _begin(asked: dict[str, Any], given: dict[str, Any]) -> None:
     try:
         options = Options(**asked)
     except ValidationError as error:
-        wrong = "; ".join(f"{'.'.join(map(str, one['loc']))}: {one['msg']}" for one in error.errors())
-        raise click.UsageError(wrong) from error
+        raise click.UsageError(every_fault(error)) from error
     from agents.commands.sandbox_warning import warn  # noqa: PLC0415 - not for --help
     from simworlds.sandbox.confined_command import best_sandbox  # noqa: PLC0415
 

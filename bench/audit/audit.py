@@ -23,6 +23,7 @@ from bench.audit.roles import UNMARKED
 from bench.audit.spr import RelationResult, judge_relations, spr_of
 from bench.audit.untrusted_blend import BlenderOptions, Crashed, NotScored, UntrustedBlend
 from bench.scenes.spec import BadSpec
+from simworlds.schemas.faults import first_fault
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Mapping, Sequence
@@ -140,9 +141,7 @@ def read_scene(file: UntrustedBlend, *, play: bool) -> Scene:
     try:
         return _SCENE.validate_python(file.ask("facts", play=play, doing="reading it"))
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(map(str, first["loc"]))
-        raise NotScored(f"Blender's facts of it were not valid: {where}: {first['msg']}") from error
+        raise NotScored(f"Blender's facts of it were not valid: {first_fault(error)}") from error
 
 
 def check_predicates(spec: Spec) -> None:

@@ -21,6 +21,7 @@ from bench.blenderbench.task_set import LEVELS, natural_key
 from bench.blenderbench.vlm import EditJudgement
 from bench.sweep.records import Provenance
 from simworlds.files import write_whole
+from simworlds.schemas.faults import first_fault
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -158,9 +159,7 @@ def read(path: Path, shape: type[_Model]) -> _Model:
     except OSError as error:
         raise BadResults(f"{path} cannot be read: {error.strerror or error}.") from error
     except ValidationError as error:
-        first = error.errors(include_url=False, include_context=False)[0]
-        where = ".".join(map(str, first["loc"])) or "the file"
-        raise BadResults(f"{path} is not valid: {where}: {first['msg']}.") from error
+        raise BadResults(f"{path} is not valid: {first_fault(error, whole='the file')}.") from error
 
 
 def write(path: Path, kept: BaseModel) -> None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from simworlds.files import write_whole
+from simworlds.schemas.faults import first_fault
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -162,9 +163,8 @@ def read_record(folder: Path) -> SceneRecord | None:
     except OSError as error:
         raise BadSceneRecord(f"{path} cannot be read: {error.strerror or error}") from error
     except ValidationError as error:
-        first = error.errors(include_url=False, include_context=False)[0]
-        where = ".".join(map(str, first["loc"])) or "the file"
-        raise BadSceneRecord(f"{path} is not a valid record: {where}: {first['msg']}") from error
+        fault = first_fault(error, whole="the file")
+        raise BadSceneRecord(f"{path} is not a valid record: {fault}") from error
 
 
 def write_record(folder: Path, record: SceneRecord) -> None:

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from kb_build.errors import ReadyBaseError
 from kb_build.schema import SCHEMA_VERSION
 from simworlds.own_command import own_command
+from simworlds.schemas.faults import first_fault
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -76,10 +77,9 @@ def read_manifest(path: Path, origin: str) -> Manifest:
             raise ReadyBaseError(f"{origin}: its manifest is too long for a ready base; do not use this file")
         manifest = Manifest.model_validate_json(path.read_bytes())
     except ValidationError as error:
-        fault = error.errors(include_url=False, include_context=False, include_input=False)[0]
-        place = ".".join(str(part) for part in fault["loc"]) or "JSON"
+        fault = first_fault(error, whole="JSON")
         raise ReadyBaseError(
-            f"{origin}: its manifest is not one of a ready base ({place}: {fault['msg']}); get another file"
+            f"{origin}: its manifest is not one of a ready base ({fault}); get another file"
         ) from error
     if manifest.schema_version != SCHEMA_VERSION:
         newer = manifest.schema_version > SCHEMA_VERSION

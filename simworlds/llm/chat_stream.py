@@ -17,6 +17,7 @@ from simworlds.llm import tokens
 from simworlds.llm.messages import Block, Text, ToolUse, Turn, Usage
 from simworlds.llm.stream import BrokenStream
 from simworlds.llm.tool_input import read_input
+from simworlds.schemas.faults import first_fault
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -99,9 +100,8 @@ class ChatAnswer:
             try:
                 valid = _Chunk.model_validate(chunk)
             except ValidationError as error:
-                fault = error.errors(include_url=False, include_input=False)[0]
-                where = ".".join(map(str, fault["loc"])) or "the whole"
-                raise BrokenStream(f"an invalid piece ({where}: {fault['msg']})") from error
+                fault = first_fault(error, whole="the whole")
+                raise BrokenStream(f"an invalid piece ({fault})") from error
             yield self._take(valid)
 
     def turn(self) -> Turn:

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from simworlds.schemas.faults import first_fault
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -66,7 +68,7 @@ def parse_message(message: Mapping[str, Any]) -> ProgressMessage | AnswerMessage
         kind = ProgressMessage if "progress" in message else AnswerMessage
         return kind.model_validate(message)
     except ValidationError as error:
-        raise Malformed(_first_fault(error)) from None
+        raise Malformed(first_fault(error)) from None
 
 
 def parse_value(read: Reader[T], value: Any) -> T:
@@ -74,15 +76,9 @@ def parse_value(read: Reader[T], value: Any) -> T:
     try:
         return read(value)
     except ValidationError as error:
-        raise Malformed(_first_fault(error)) from None
+        raise Malformed(first_fault(error)) from None
     except (*_READING, RecursionError) as error:
         raise Malformed(f"{type(error).__name__}: {str(error)[:200]}") from error
-
-
-def _first_fault(error: ValidationError) -> str:
-    fault = error.errors(include_url=False, include_context=False, include_input=False)[0]
-    place = ".".join(str(part)[:60] for part in fault["loc"][:8])
-    return f"{place}: {fault['msg'][:200]}" if place else fault["msg"][:200]
 
 
 def nothing(value: Any) -> None:

@@ -24,6 +24,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 from agents.blender.assets.licence import NOTE_FILE, LicenceNote
 from simworlds.files import write_whole
 from simworlds.sandbox.errors import Refusal
+from simworlds.schemas.faults import first_fault
 
 if TYPE_CHECKING:
     import threading
@@ -238,9 +239,8 @@ class PolyHaven:
             raise self._malformed(error) from error
 
     def _malformed(self, error: ValidationError) -> Refusal:
-        fault = error.errors(include_url=False, include_context=False, include_input=False)[0]
-        place = ".".join(str(part)[:40] for part in fault["loc"][:6])
-        return Refusal(f"Poly Haven's answer is not what it should be ({place}: {fault['msg'][:200]}).")
+        fault = first_fault(error, whole="the whole")
+        return Refusal(f"Poly Haven's answer is not what it should be ({fault}).")
 
     def _client(self) -> httpx2.Client:
         headers = {"User-Agent": _AGENT, "Accept-Encoding": "identity"}

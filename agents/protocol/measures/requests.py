@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from simworlds.schemas.faults import first_fault
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -79,7 +81,7 @@ def measure(requests: Iterable[Request[Any]], measure_in_blender: MeasureInBlend
                 try:
                     answers[request] = request.answer.model_validate(reply["value"])
                 except ValidationError as error:
-                    answers[request] = f"Blender's answer is invalid: {error.errors()[0]['msg']}"
+                    answers[request] = f"Blender's answer is invalid: {first_fault(error)}"
             else:
                 answers[request] = str(reply.get("unmeasured") or "Blender gave no answer")
     return Measures(answers)

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from simworlds.schemas.faults import every_fault
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
@@ -101,8 +103,4 @@ class Predicate:
         try:
             return self.params.model_validate(dict(given))
         except ValidationError as invalid:
-            wrong = "; ".join(
-                f"{'.'.join(map(str, error['loc']))}: {error['msg']}"
-                for error in invalid.errors(include_url=False)
-            )
-            raise ValueError(f"{self.name}: {wrong}") from invalid
+            raise ValueError(f"{self.name}: {every_fault(invalid)}") from invalid
