@@ -13,6 +13,7 @@ from pydantic import Field, model_validator
 
 from agents.blender.readable_files import find_readable
 from agents.blender.second_blender import second_blender
+from simworlds.blend_file import HEAD, begins_blend
 from simworlds.counting import format_list
 from simworlds.sandbox.errors import BlenderError, NotThere, Refusal
 from simworlds.sandbox.hostile_ground import DEEPEST, HostileGround, copy_folder, copy_to
@@ -29,7 +30,6 @@ COPY_NAME = ".saved.blend"  # in the workspace, until it is taken out
 _MOST_FILES = 500_000
 _MOST_NAMED = 20_000
 _STAGED = ".saving-"  # in the run's folder
-_MAGIC = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")  # plain, zstd (since 3.0), gzip (before)
 _BLEND = re.compile(r"\.blend\d*$", re.IGNORECASE)
 _LISTED = 12
 _LARGEST = 1 << 40  # bytes of a .blend
@@ -227,14 +227,14 @@ def _check(blend_file: ReadableFile, name: str, folder: RunFolder) -> None:
         raise Refusal(f"{name} is a checkpoint; go back to it with checkpoint={path.stem.lstrip('0')}.")
     try:
         with HostileGround(blend_file.root).open(blend_file.relative, at_most=_LARGEST) as file:
-            head = file.read(7)
+            head = file.read(HEAD)
     except NotThere as error:
         raise Refusal(f"There is no {name}. {describe_saved_files(folder)}") from error
     except Refusal as error:
         raise Refusal(f"{name} cannot be opened: it is a link or not a regular file.") from error
     if not head:
         raise Refusal(f"{name} is empty.")
-    if not head.startswith(_MAGIC):
+    if not begins_blend(head):
         raise Refusal(f"{name} is not a .blend file.")
 
 

@@ -301,18 +301,14 @@ def _draw(blender: Supervisor, report: Report, call: Call, checked: Verification
 
 
 def _print_logs(scenes: tuple[Path, ...], logs: list[dict[str, Any]]) -> None:
-    """Prints logs of SARIF, one of each scene, as one.
-
-    Code hosts take several runs of one tool only if each says which it is.
-    """
+    """Prints logs of SARIF, one of each scene, as one."""
     from agents.protocol.report.json_report import dump_json  # noqa: PLC0415 - not for --help
+    from simworlds.sarif import sarif_log, tell_apart  # noqa: PLC0415 - likewise
 
     runs = [run for log in logs for run in log["runs"]]
-    if len(runs) > 1:
-        for scene, run in zip(scenes, runs, strict=True):
-            run["automationDetails"] = {"id": f"simworlds-verify/{scene.as_posix()}/"}
+    tell_apart(runs, [f"simworlds-verify/{scene.as_posix()}/" for scene in scenes])
     if logs:
-        click.echo(dump_json({**logs[0], "runs": runs}))
+        click.echo(dump_json(sarif_log(runs)))
 
 
 def _print(report: Report, checked: VerificationScope, form: str | None, logs: list[dict[str, Any]]) -> None:

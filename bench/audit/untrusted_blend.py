@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench.audit.inside import LARGEST_REPLY
+from simworlds.blend_file import HEAD, begins_blend
 from simworlds.sandbox.blender_process import BlenderProcess
 from simworlds.sandbox.confined_command import best_sandbox
 from simworlds.sandbox.errors import (
@@ -40,7 +41,6 @@ if TYPE_CHECKING:
 INSIDE = Path(__file__).parent / "inside"
 AUDITOR = Program("bench.audit.inside.serve", {**SHARED, "bench.audit.inside": INSIDE}, LARGEST_REPLY)
 _LONGEST_REASON = 600
-_MARKS = (b"BLENDER", b"\x1f\x8b", b"\x28\xb5\x2f\xfd")  # plain, gzip (before 3.0), Zstandard
 
 
 class NotScored(Exception):  # noqa: N818 - reads as the state it names
@@ -164,12 +164,12 @@ def resolve_blend(blend: Path) -> Path:
         if not path.is_file():
             raise NotScored("there is no such file" if not path.exists() else "it is not a file")
         with path.open("rb") as file:
-            head = file.read(8)
+            head = file.read(HEAD)
     except OSError as error:
         raise NotScored(f"it cannot be read: {error.strerror or error}") from error
     if not head:
         raise NotScored("it is empty")
-    if not head.startswith(_MARKS):
+    if not begins_blend(head):
         raise NotScored("it is not a .blend file")
     return path
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 import base64
 import hashlib
 import inspect
-import re
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -23,6 +22,7 @@ from bench.results.evidence import Evidence, evidence_of
 from bench.results.scores import METRICS, TITLES
 from bench.results.tables import NAMES, models, number
 from bench.scenes.spec import CATEGORIES, specs
+from simworlds.html_text import fit_for_html
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
 
 _FOLDER = Path(__file__).parent / "templates"
 _LEVELS = ("D1", "D2", "D3")
-# Characters that HTML does not allow, and those that change the direction of text.
-_UNFIT = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\u202a-\u202e\u2066-\u2069\ufffe\uffff]")
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +94,7 @@ def page(results: ResultSet, tables: Sequence[Table], notes: Sequence[str], seal
             script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
         )
     )
-    return _UNFIT.sub("\N{REPLACEMENT CHARACTER}", text)
+    return fit_for_html(text)
 
 
 @cache

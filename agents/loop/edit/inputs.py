@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from agents.loop.errors import Unusable
+from simworlds.blend_file import HEAD, begins_blend
 from simworlds.llm.picture_file import BadPicture, read_picture
 
 if TYPE_CHECKING:
@@ -12,8 +13,6 @@ if TYPE_CHECKING:
 
     from agents.loop.options import Options
     from simworlds.llm.messages import Picture
-
-_BLEND = (b"BLENDER", b"\x28\xb5\x2f\xfd", b"\x1f\x8b")  # plain, and packed by zstd or gzip
 
 
 def check_inputs(options: Options) -> None:
@@ -24,10 +23,10 @@ def check_inputs(options: Options) -> None:
         raise Unusable("There is nothing to edit: give a .blend.")
     try:
         with options.file.open("rb") as file:
-            start = file.read(8)
+            head = file.read(HEAD)
     except OSError as error:
         raise Unusable(f"{options.file} cannot be read: {error.strerror or error}.") from error
-    if not start.startswith(_BLEND):
+    if not begins_blend(head):
         raise Unusable(f"{options.file} is not a .blend file: its first bytes are not those of one.")
     if options.reference is not None:
         picture(options.reference)

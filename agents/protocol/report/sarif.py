@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import json
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from urllib.parse import quote
 
 from agents.protocol.report.json_report import finite_fields
+from simworlds.sarif import invocations, notification, sarif_log, sarif_tool, uri_of
 from simworlds.terminal.text import plain
 
 if TYPE_CHECKING:
@@ -16,7 +15,6 @@ if TYPE_CHECKING:
     from agents.protocol.report.summary import VerificationScope
     from agents.protocol.rule import Rule
 
-_SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 _TOOL_NAME = "simworlds verify"
 _LEVELS = {"hard": "error", "soft": "warning"}
 
@@ -24,9 +22,9 @@ _LEVELS = {"hard": "error", "soft": "warning"}
 def as_sarif(report: Report, scope: VerificationScope) -> dict[str, Any]:
     """The report as SARIF. An undecided finding has the kind ``open``; a rule that failed is a notification."""
     places = {rule.id: place for place, rule in enumerate(scope.rules)}
-    uri = _uri(scope.file)
+    uri = uri_of(scope.file) if scope.file else ""
     notifications = [
-        _notification(finding.message)
+        notification(plain(finding.message))
         | ({"associatedRule": {"id": finding.rule}} if finding.rule in places else {})
         for finding in report.findings
         if finding.outcome == "error"
@@ -46,39 +44,21 @@ def as_sarif(report: Report, scope: VerificationScope) -> dict[str, Any]:
     }
     if uri:
         run["artifacts"] = [{"location": {"uri": uri}}]
-    return _log(run)
+    return sarif_log([run])
 
 
 def sarif_failure(message: str) -> dict[str, Any]:
     """SARIF of a run that failed as a whole."""
-    return _log(_run([], [_notification(message)]))
-
-
-def _log(run: dict[str, Any]) -> dict[str, Any]:
-    return {"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}
+    return sarif_log([_run([], [notification(plain(message))])])
 
 
 def _run(rules: list[dict[str, Any]], notifications: list[dict[str, Any]]) -> dict[str, Any]:
-    """A run without results; it was successful if there are no notifications."""
+    """A run without results."""
     return {
-        "tool": {"driver": {"name": _TOOL_NAME, "rules": rules}},
-        "invocations": [
-            {"executionSuccessful": not notifications, "toolExecutionNotifications": notifications}
-        ],
+        "tool": sarif_tool(_TOOL_NAME, rules),
+        "invocations": invocations(notifications),
         "results": [],
     }
-
-
-def _notification(message: str) -> dict[str, Any]:
-    return {"level": "error", "message": {"text": plain(message)}}
-
-
-def _uri(file: str) -> str:
-    """A relative path stays relative; an absolute one becomes a URI with a scheme."""
-    if not file:
-        return ""
-    path = Path(file)
-    return path.as_uri() if path.is_absolute() else quote(path.as_posix())
 
 
 def _sarif_rule(rule: Rule) -> dict[str, Any]:

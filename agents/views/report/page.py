@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-import re
 from contextlib import closing
 from dataclasses import dataclass, field
 from functools import cache
@@ -31,6 +30,7 @@ from agents.views.report.tables import objects_of, relations_of
 from agents.views.report.timeline import draw_timeline
 from simworlds.counting import counted
 from simworlds.files import write_whole
+from simworlds.html_text import fit_for_html
 from simworlds.llm.spending import SpendingRow as Spent
 from simworlds.terminal.text import shortened
 
@@ -45,8 +45,6 @@ _FOLDER = Path(__file__).parent / "templates"
 _RULE_NAMES = {rule.id: rule.name for rule in RULES}
 _ABOUT = 60  # letters
 _PLAIN_STOPS = ("end_turn", "tool_use", "stop_sequence")
-# What HTML has no place for, and what turns the direction of the text that is read.
-_UNFIT = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\u202a-\u202e\u2066-\u2069\ufffe\uffff]")
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,7 +153,7 @@ def _render_page(run_state: RunState, run: Path, media: Media) -> str:
         script_hash=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
         link=media.link,
     )
-    return _UNFIT.sub("\N{REPLACEMENT CHARACTER}", text)
+    return fit_for_html(text)
 
 
 @cache

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from urllib.parse import quote
 
 from kb_check.command.formats.json_document import dump
 from kb_check.rule import all_rules
+from simworlds.sarif import invocations, notification, sarif_log, sarif_tool, tell_apart, uri_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -17,20 +16,14 @@ if TYPE_CHECKING:
     from kb_check.findings import Edit, Finding, Span
     from kb_check.rule import Rule
 
-_SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 _CONTEXT = 120  # letters on each side of a place that tell it from others
 
 
 def as_sarif(*reports: Report) -> str:
-    """Reports for different Blenders, each as a run; what could not be checked is a notification of it.
-
-    Code hosts take several runs of one tool only if each says which it is.
-    """
+    """Reports for different Blenders, each as a run; what could not be checked is a notification of it."""
     runs = [_run(report) for report in reports]
-    if len(runs) > 1:
-        for run, report in zip(runs, reports, strict=True):
-            run["automationDetails"] = {"id": f"simworlds-check/blender-{report.blender}/"}
-    return dump({"$schema": _SCHEMA, "version": "2.1.0", "runs": runs})
+    tell_apart(runs, [f"simworlds-check/blender-{report.blender}/" for report in reports])
+    return dump(sarif_log(runs))
 
 
 def _run(report: Report) -> dict[str, Any]:
@@ -38,17 +31,10 @@ def _run(report: Report) -> dict[str, Any]:
     files = [file for file in report.files if file.findings]
     places = {file.name: place for place, file in enumerate(files)}
     return {
-        "tool": {"driver": {"name": "simworlds check", "rules": [_rule(rule) for rule in all_rules().values()]}},
+        "tool": sarif_tool("simworlds check", [_rule(rule) for rule in all_rules().values()]),
         "columnKind": "unicodeCodePoints",
-        "invocations": [
-            {
-                "executionSuccessful": not report.faults,
-                "toolExecutionNotifications": [
-                    {"level": "error", "message": {"text": fault}} for fault in report.faults
-                ],
-            }
-        ],
-        "artifacts": [{"location": {"uri": _uri(file.name)}} for file in files],
+        "invocations": invocations([notification(fault) for fault in report.faults]),
+        "artifacts": [{"location": {"uri": uri_of(file.name)}} for file in files],
         "results": [
             _result(file, places[file.name], finding, rules) for file, finding in report.findings
         ],
@@ -67,7 +53,7 @@ def _rule(rule: Rule) -> dict[str, Any]:
 
 def _result(file: FileReport, place: int, finding: Finding, rules: list[str]) -> dict[str, Any]:
     cell, line = file.source.place(finding.span.line)
-    artifact = {"uri": _uri(file.name), "index": place}
+    artifact = {"uri": uri_of(file.name), "index": place}
     physical: dict[str, Any] = {"artifactLocation": artifact}
     if not cell:  # the lines of a notebook's file are not those of its cells
         physical["region"] = _region(finding.span)
@@ -111,9 +97,3 @@ def _context(file: FileReport, span: Span) -> str:
     if span.line > len(file.lines):
         return ""
     return file.lines[span.line - 1][max(span.column - _CONTEXT, 0) : span.column + _CONTEXT].strip()
-
-
-def _uri(name: str) -> str:
-    """A relative path stays relative; an absolute one becomes a URI with a scheme."""
-    path = Path(name)
-    return path.as_uri() if path.is_absolute() else quote(path.as_posix(), errors="replace")

@@ -286,6 +286,11 @@ def test_an_absolute_path_is_a_uri_and_an_open_scene_has_none() -> None:
     assert "physicalLocation" not in run["results"][0]["locations"][0]
 
 
+def test_a_relative_path_that_is_not_utf_8_is_a_uri_too() -> None:
+    run = as_sarif(report(GAP), checked("V1", file="scenes/a\udcff.blend"))["runs"][0]
+    assert run["artifacts"][0]["location"]["uri"] == "scenes/a%3F.blend"
+
+
 def test_a_run_that_came_to_nothing_is_sarif_too() -> None:
     (run,) = sarif_failure("There is no file x.")["runs"]
     assert run["results"] == []
