@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import Field, model_validator
 
 from agents.plan.part import STAGES, Frame, PlanPart, Stage
-from agents.plan.scene import DeformationKind, MotionMechanism, RenderSettings
+from agents.plan.scene import RenderSettings
+from agents.protocol.vocabulary import DeformationKind, MotionKind
 
 if TYPE_CHECKING:
     from collections.abc import Set
@@ -43,7 +44,7 @@ class EditedActor(PlanPart):
 
     name: FileName
     deformation_kind: DeformationKind
-    motion_kind: MotionMechanism
+    motion_kind: MotionKind
 
 
 class EditPlan(PlanPart):

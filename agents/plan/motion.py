@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from agents.plan.part import Frame, Metres, Name, PlanPart, Vector
 
-MotionKind = Literal[
+PhaseKind = Literal[
     "hold", "translate", "rotate", "fall", "slide", "roll", "topple", "swing", "bounce", "deform", "flow", "emit",
     "settle",
 ]  # fmt: skip
@@ -24,7 +24,7 @@ class MotionPhase(PlanPart):
 
     name: Name
     actor: Name
-    kind: MotionKind
+    kind: PhaseKind
     start: Frame
     end: Frame
     direction: Vector | None = None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -10,15 +10,16 @@ from agents.plan.motion import MotionPlan
 from agents.plan.part import STAGES, Frame, Length, Name, Node, PlanPart, Share, Stage, Vector
 from agents.plan.relations import Relation
 
+if TYPE_CHECKING:
+    from agents.protocol.vocabulary import DeformationKind, MotionKind
+
 PhysicsRole = Literal[
     "ground", "static", "collider", "rigid", "cloth", "soft", "fluid", "container", "emitter", "force", "rig",
     "keyframed", "hair",
 ]  # fmt: skip
-DeformationKind = Literal["rig", "sim_cloth", "sim_fluid", "sim_rigid", "sim_soft", "sim_particle", "none"]
-MotionMechanism = Literal["keyframe", "bake", "none"]
 
 # Role → (deformation_kind, motion_kind): the tags that the object's L3 collection must carry.
-MECHANISMS: dict[str, tuple[DeformationKind, MotionMechanism]] = {
+MECHANISMS: dict[str, tuple[DeformationKind, MotionKind]] = {
     "ground": ("none", "none"),
     "static": ("none", "none"),
     "collider": ("none", "none"),
@@ -76,7 +77,7 @@ class PlannedObject(PlanPart):
     inflow: bool = False
 
     @property
-    def mechanism(self) -> tuple[DeformationKind, MotionMechanism]:
+    def mechanism(self) -> tuple[DeformationKind, MotionKind]:
         """(deformation_kind, motion_kind): the tags that its role requires."""
         return MECHANISMS[self.role]
 

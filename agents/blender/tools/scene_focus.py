@@ -6,6 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from agents.blender.inside.state.sections import SECTIONS
 from agents.blender.tools.scene_fold import series
 from agents.blender.tools.scene_order import bears_words, materials_of
 from simworlds.counting import counted
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
 
     from agents.blender.tools.scene_fold import Entry
 
-_NARROWED = ("collections", "objects", "physics", "animation", "materials", "view")
 _ALWAYS = (
     "world",
     "render",
@@ -43,7 +43,7 @@ def narrowed(facts: dict[str, Any], focus: Sequence[str], old: Collection[str] |
     A name stands for an object with all that hangs on it, a collection with all below it, a material, a light, … of
     just this name; one that nothing bears stands for what bears its words. Materials of such objects are in focus too.
     """
-    of = {name: sum(entry.get("count", 1) for entry in facts[name]) for name in _NARROWED if name in facts}
+    of = {name: sum(entry.get("count", 1) for entry in facts[name]) for name in SECTIONS if name in facts}
     objects: list[Entry] = facts.get("objects", [])
     is_named = _named(facts, focus)
     wanted = _objects_in_focus(facts, is_named, old)
@@ -81,7 +81,7 @@ def narrowed(facts: dict[str, Any], focus: Sequence[str], old: Collection[str] |
 
 def _named(facts: Mapping[str, Any], focus: Iterable[str]) -> Callable[[str], bool]:
     """Whether a name is one of ``focus``, or bears the words of one that nothing is called by."""
-    known = {str(entry["name"]) for name in _NARROWED for entry in facts.get(name, ())}
+    known = {str(entry["name"]) for name in SECTIONS for entry in facts.get(name, ())}
     exact = {name for name in focus if name in known}
     bears = bears_words([name for name in focus if name not in exact])
     return lambda name: name in exact or bears(name)

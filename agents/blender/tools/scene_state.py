@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, cast
 from pydantic import Field
 from pydantic.json_schema import SkipJsonSchema
 
+from agents.blender.inside.state.sections import DATA_BLOCKS, SECTIONS, EntrySection
 from agents.blender.tools import scene_dynamics as dynamics
 from agents.blender.tools import scene_words as words
 from agents.blender.tools.base import Arguments, BlenderTool, Call, CallContext, Result
@@ -32,8 +33,9 @@ _PART = 40  # of them in one entry of a full readout
 _FEW_NAMES = 24  # series of names in one collection
 _REST_CALL = "blender_scene_state(objects=[…])"
 
-SectionName = Literal["collections", "objects", "physics", "animation", "materials", "view", "data_blocks"]
-_TITLES: dict[SectionName, tuple[str, int]] = {
+SectionName = Literal[EntrySection, "data_blocks"]
+# The title of each section, and its share of the tokens beside the others'.
+_TITLES: dict[EntrySection, tuple[str, int]] = {
     "collections": ("Collections", 2),
     "objects": ("Objects", 4),
     "physics": ("Physics", 3),
@@ -41,9 +43,8 @@ _TITLES: dict[SectionName, tuple[str, int]] = {
     "materials": ("Materials", 1),
     "view": ("Cameras, lights, world, render", 1),
 }
-DATA_BLOCKS: SectionName = "data_blocks"
-_ORDERED: tuple[SectionName, ...] = ("objects", "physics", "animation", "materials")
-_OF_SUMMARY: tuple[SectionName, ...] = ("collections", "physics", "animation", "view")
+_ORDERED: tuple[EntrySection, ...] = ("objects", "physics", "animation", "materials")
+_OF_SUMMARY: tuple[EntrySection, ...] = ("collections", "physics", "animation", "view")
 
 
 class SceneStateArguments(Arguments):
@@ -89,8 +90,8 @@ def run(
     context: CallContext, arguments: SceneStateArguments, call: Call, more: Mapping[str, Any] | None = None
 ) -> Result:
     """Reads the scene; ``more`` are arguments for the Blender."""
-    usual = _OF_SUMMARY if arguments.detail == "summary" and arguments.focus is None else tuple(_TITLES)
-    names = [name for name in (*_TITLES, DATA_BLOCKS) if name in (arguments.sections or usual)]
+    usual = _OF_SUMMARY if arguments.detail == "summary" and arguments.focus is None else SECTIONS
+    names = [name for name in (*SECTIONS, DATA_BLOCKS) if name in (arguments.sections or usual)]
     reply = context.blender.call(
         "scene_state",
         {
@@ -116,8 +117,10 @@ def readout(facts: dict[str, Any], arguments: SceneStateArguments) -> Result:
             keep_parts(facts, arguments.first)
     rest = narrowed(facts, arguments.focus, arguments.old) if arguments.focus is not None else None
     sections = [
-        ReadoutSection(name, _items(name, facts[name], arguments), weight, facts["unread"].get(name, 0))
-        for name, (_, weight) in _TITLES.items()
+        ReadoutSection(
+            name, _items(name, facts[name], arguments), _TITLES[name][1], facts["unread"].get(name, 0)
+        )
+        for name in SECTIONS
         if name in facts
     ]
     head = _clipped(words.scene(facts), arguments.max_tokens // 4)
@@ -126,7 +129,7 @@ def readout(facts: dict[str, Any], arguments: SceneStateArguments) -> Result:
     last = _clipped(_rest_text(rest), arguments.max_tokens // 3) if rest and rest.lines else ""
     share_tokens(sections, arguments.max_tokens - tokens(head) - tokens(last), footer)
     data: dict[str, Any] = {"scene": facts["scene"], "notes": facts["notes"], "left_out": {}}
-    data |= {name: [] for name in _TITLES if name in facts}
+    data |= {name: [] for name in SECTIONS if name in facts}
     parts = [head]
     for section in sections:
         parts.append(_section_text(section, facts, arguments, rest))
@@ -160,7 +163,7 @@ def _block_counts(blocks: dict[str, str]) -> str:
     return f"## Data-blocks ({len(blocks):,})\n{counts}. Their digests are in the structured data."
 
 
-def _items(name: SectionName, entries: list[Entry], arguments: SceneStateArguments) -> list[ReadoutItem]:
+def _items(name: EntrySection, entries: list[Entry], arguments: SceneStateArguments) -> list[ReadoutItem]:
     """The items of a section, from ``start`` on."""
     full, summary = arguments.detail == "full", arguments.detail == "summary"
     if name == "collections":
@@ -176,8 +179,8 @@ def _items(name: SectionName, entries: list[Entry], arguments: SceneStateArgumen
             entries = fold(entries, by_name=False)
     if name == "animation" and full:
         entries = _in_parts(entries)
-    listed = summary or "objects" not in (arguments.sections or _TITLES)
-    write: dict[SectionName, Callable[[Entry], str]] = {
+    listed = summary or "objects" not in (arguments.sections or SECTIONS)
+    write: dict[EntrySection, Callable[[Entry], str]] = {
         "collections": lambda entry: words.collection(entry, names=listed),
         "objects": words.scene_object,
         "physics": dynamics.physics,
@@ -223,7 +226,7 @@ def _section_text(
     section: ReadoutSection, facts: dict[str, Any], arguments: SceneStateArguments, rest: FocusRest | None
 ) -> str:
     """A section with its heading, and the call that shows what is left out."""
-    title, _ = _TITLES[cast("SectionName", section.name)]
+    title, _ = _TITLES[cast("EntrySection", section.name)]
     total = facts["unread"].get(section.name, 0) + len(facts[section.name])
     whole = f" of {rest.of[section.name]:,}" if rest and rest.of[section.name] > total else ""
     lines = [f"## {title} ({total:,}{whole})", *(item.text for item in section.shown)]

@@ -17,12 +17,11 @@ from .likely_mistakes import notes_of
 from .object_entries import SceneObjects, object_facts, tags_of, tree_of
 from .physics_entries import physics_of, rigid_body_world_facts
 from .rna_values import number, numbers, shortened, text
+from .sections import DATA_BLOCKS, SECTIONS
 from .world_extents import MOST_INSTANCES, ExtentReader, evaluated_graph
 
 MOST_OBJECTS = 5_000  # of one readout
 MOST_ENTRIES = 5_000  # of any other section
-SECTIONS = ("collections", "objects", "physics", "animation", "materials", "view")
-DATA_BLOCKS = "data_blocks"
 _OF_VIEW = ("CAMERA", "LIGHT")
 
 

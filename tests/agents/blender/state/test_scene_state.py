@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from places import REPO
 
+from agents.blender.inside.state.sections import SECTIONS
 from agents.blender.tools.base import Result, parse
 from agents.blender.tools.scene_fit import tokens
 from agents.blender.tools.scene_order import words_of
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.blender
 
-SECTIONS = ("collections", "objects", "physics", "animation", "materials", "view")
 CUBE = "bpy.ops.mesh.primitive_cube_add({0})\no = bpy.context.object\n"
 
 
@@ -1092,7 +1092,8 @@ WITHOUT_NUMPY = """
 import sys
 sys.modules["numpy"] = None
 import bpy
-from agents.blender.inside.state.readout import SECTIONS, scene_state
+from agents.blender.inside.state.readout import scene_state
+from agents.blender.inside.state.sections import SECTIONS
 wanted = {"detail": "full", "objects": None, "sections": SECTIONS, "parts": True}
 print("objects:", sum(1 for _ in scene_state(wanted, print)["objects"]))
 """
