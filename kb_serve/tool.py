@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from functools import cache
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from mcp_types import CallToolResult, TextContent, Tool, ToolAnnotations
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from kb_serve.answer.answer_kind import AnswerKind
 from kb_serve.errors import BadQuery
 from kb_serve.query_limits import LEAST_TOKENS, LIMIT, LONGEST_QUERY, MAX_TOKENS
 from simworlds.schemas.faults import describe_faults
 from simworlds.schemas.json_schema import schema_of
 
 if TYPE_CHECKING:
+    from kb_serve.answer.docs_answer import DocsAnswer
     from kb_serve.service import Service
 
 NAME = "blender_docs"
@@ -71,9 +72,8 @@ class DocsReply(BaseModel):
 
     model_config = ConfigDict(title="blender_docs answer")
 
-    kind: str = Field(
-        description="How well the query was met: by one symbol or page, by several candidates, or not at all.",
-        json_schema_extra={"enum": ["schema", "page", "candidates", "none"]},
+    kind: AnswerKind = Field(
+        description="How well the query was met: by one symbol or page, by several candidates, or not at all."
     )
     text: str = Field(description="The answer in Markdown.")
     hits: list[DocsHit] = Field(description="The symbols and pages found, best first.")
@@ -121,8 +121,25 @@ def answer(service: Service, arguments: dict[str, Any] | None) -> CallToolResult
     found, version = service.ask(
         query.query, blender=query.blender, limit=query.limit, max_tokens=query.max_tokens, part=query.part
     )
+    reply = _reply(found, version)
     return CallToolResult(
-        content=[TextContent(text=found.text)], structured_content={**asdict(found), "blender": version}
+        content=[TextContent(text=reply.text)], structured_content=reply.model_dump(mode="json")
+    )
+
+
+def _reply(found: DocsAnswer, version: str) -> DocsReply:
+    return DocsReply(
+        kind=found.kind,
+        text=found.text,
+        hits=[
+            DocsHit(id=hit.id, kind=hit.kind, title=hit.title, score=hit.score, url=hit.url)
+            for hit in found.hits
+        ],
+        notes=list(found.notes),
+        part=found.part,
+        parts=found.parts,
+        next_part=found.next_part,
+        blender=version,
     )
 
 

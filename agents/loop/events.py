@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from datetime import UTC, datetime
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, Any, Literal, cast
+from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
 
 from pydantic import (
     BaseModel,
@@ -385,6 +385,11 @@ KnownEvent = Annotated[
 ]  # fmt: skip
 _KNOWN: TypeAdapter[Event] = TypeAdapter(KnownEvent)
 _ANY = TypeAdapter(Event)
+
+
+def types_of(kind: type[Event]) -> tuple[str, ...]:
+    """The types of rows that events of this class have."""
+    return get_args(kind.model_fields["type"].annotation)
 
 
 def read_event(row: Mapping[str, Any]) -> Event:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard, TypeVar
 from pydantic import ValidationError
 
 from agents.loop.errors import NoRun, RunError
-from agents.loop.events import Event, read_event
+from agents.loop.events import Event, read_event, types_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 Row = dict[str, Any]
 AnyEvent = TypeVar("AnyEvent", bound=Event)
+T = TypeVar("T")
 
 KEYS = ("role", "stage", "attempt", "round", "n")
 NAME = "journal.jsonl"
@@ -69,15 +70,24 @@ class Journal:
         """The event of the type of ``like`` about the same, if there is one. Raises NoRun where its row is broken."""
         with self._lock:
             row = self._by_key.get(_key(like.as_row()))
-        try:
-            return None if row is None else type(like).model_validate(row)
-        except ValidationError as error:
-            raise NoRun(f"{self.path}, row {row and row.get('i')}: not a valid {like.type!r} row.") from error
+        return None if row is None else self._event(type(like), row)
 
-    def last(self, field: str) -> Any:
-        """The newest value of a field that is not null; None where no row has one."""
+    def newest(self, *kinds: type[AnyEvent], value: Callable[[AnyEvent], T | None]) -> T | None:
+        """The newest ``value`` of these kinds of events that is not None; None where no event has one.
+
+        Raises NoRun where a row is broken.
+        """
+        of_type = {name: kind for kind in kinds for name in types_of(kind)}
         with self._lock:
-            return next((row[field] for row in reversed(self.rows) if row.get(field) is not None), None)
+            rows = [row for row in self.rows if row["type"] in of_type]
+        values = (value(self._event(of_type[row["type"]], row)) for row in reversed(rows))
+        return next((found for found in values if found is not None), None)
+
+    def _event(self, kind: type[AnyEvent], row: Row) -> AnyEvent:
+        try:
+            return kind.model_validate(row)
+        except ValidationError as error:
+            raise NoRun(f"{self.path}, row {row.get('i')}: not a valid {row['type']!r} row.") from error
 
     def note(self, event: Event) -> None:
         """Writes an event, unless there is one of its type about the same."""

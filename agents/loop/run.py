@@ -27,6 +27,7 @@ from agents.loop.events import (
     PicturePart,
     RolledBack,
     SceneRestored,
+    SessionBegan,
     TimeTold,
     ToolAnswered,
     ToolCalled,
@@ -137,13 +138,13 @@ class Run:
     @property
     def render_minutes(self) -> float | None:
         """How long a film may take: what was said last, as the run began or was resumed."""
-        said: float | None = self.journal.last("render_minutes")
+        said = self.journal.newest(SessionBegan, value=lambda began: began.render_minutes)
         return said or self.options.render_minutes
 
     @property
     def samples(self) -> int | None:
         """The samples of a film, instead of the plan's: what was said last."""
-        said: int | None = self.journal.last("render_samples")
+        said = self.journal.newest(SessionBegan, value=lambda began: began.render_samples)
         return said or self.options.samples
 
     @property
@@ -272,11 +273,11 @@ class Run:
         with self._door:
             if self._aligned:
                 return
-            wanted = self.journal.last("checkpoint")
+            wanted = self.journal.newest(ToolAnswered, SceneRestored, value=lambda event: event.checkpoint)
             if wanted is not None:
                 now = self.tools.restore(wanted)
                 if now != wanted:
-                    self.journal.append(SceneRestored(**{"from": wanted}, checkpoint=now))
+                    self.journal.append(SceneRestored.model_validate({"from": wanted, "checkpoint": now}))
             self._aligned = True
 
     # Pictures: in the journal by name, on the disk by content

@@ -226,10 +226,9 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
         tell=_LOG.info,
     )
     with ExitStack() as stack:
+        max_cost = journal.newest(SessionBegan, value=lambda began: began.max_cost)
         pause = stop.event.wait  # asked to stop, nobody waits for an overloaded server
-        live = LiveOptions(
-            Spending(journal.last("max_cost"), options.prices), _retrying(session), pause, stack
-        )
+        live = LiveOptions(Spending(max_cost, options.prices), _retrying(session), pause, stack)
         model = make_model(root, options, journal, live)
         tools = stack.enter_context(ToolClient(setup, _same_blender(options), session.watcher.progress))
         stop.tools = tools

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from kb_serve.answer.budget import AnswerBlock, clip, cut, names_of, shown, tokens
 from kb_serve.answer.next_call import next_call
@@ -15,10 +15,10 @@ from simworlds.counting import counted
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from kb_serve.answer.answer_kind import AnswerKind
     from kb_serve.answer.budget import AnswerPart
     from kb_serve.answer.hits import Hit
 
-AnswerKind = Literal["schema", "page", "candidates", "none"]
 _FOOTER_TOKENS = 70
 _NOTES_TOKENS = 500
 _NO_VALUE = re.compile(rf"'([^'\n]+)'`?{NO_VALUE}")

@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+if TYPE_CHECKING:
+    from kb_serve.recognise.recognition import Why
+
+# How an id got into the list that was not recognised in the query: by its words, as a node whose label is in the
+# question, as a part of what was asked for, or with a topic.
+_NotRecognised = Literal["found", "beside", "part", "topic"]
 
 
 class RankedId(NamedTuple):
@@ -10,7 +17,7 @@ class RankedId(NamedTuple):
 
     id: str
     score: float
-    why: str
+    why: Why | _NotRecognised
     anchor: str = ""
     members: tuple[str, ...] = ()
     chapter: int = -1
