@@ -12,7 +12,7 @@ from kb_build.base_file import read_meta
 from kb_build.live.values import compare_values, runtime_at_hand
 from kb_build.schema import open_read_only, unpack
 from kb_build.symbols.flags import empty_when_new, fillers
-from kb_build.symbols.records import symbol_from_json
+from kb_build.symbols.records import COMPARED, NAME_WHEN_SHOWN, symbol_from_json
 from measurements.report import ReportPart, TargetFigure, run_steps
 from measurements.setting import say
 
@@ -52,8 +52,8 @@ def _table(title: str, counts: dict[str, int], note: str) -> Table:
 
 
 def _defaults(symbols: Sequence[Symbol]) -> Table:
-    pointers = [symbol for symbol in symbols if symbol.type == "pointer" and "compared" in symbol.flags]
-    compared = [symbol for symbol in symbols if symbol.type != "pointer" and "compared" in symbol.flags]
+    pointers = [symbol for symbol in symbols if symbol.type == "pointer" and COMPARED in symbol.flags]
+    compared = [symbol for symbol in symbols if symbol.type != "pointer" and COMPARED in symbol.flags]
     differing = [symbol for symbol in compared if any(not new.when for new in symbol.new_values)]
     counts = {
         "properties of which new ones were read": len(compared),
@@ -88,9 +88,7 @@ def _sockets(symbols: Sequence[Symbol], former: int) -> Table:
     counts = {
         "sockets": len(sockets),
         "reached by name in every mode": sum('["' in "".join(symbol.subscripts[:1]) for symbol in sockets),
-        "by name only while shown, else by place": sum(
-            "name-when-shown" in symbol.flags for symbol in sockets
-        ),
+        "by name only while shown, else by place": sum(NAME_WHEN_SHOWN in symbol.flags for symbol in sockets),
         "whose identifier is not their name": sum(symbol.identifier != symbol.label for symbol in sockets),
         "former names that Blender still takes": former,
     }

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
 from kb_build.flow.symbols import BaseSymbols
+from kb_build.symbols.records import READ_ONLY
 from kb_build.usage.scripts import blender_scripts, read_script
 from kb_check.checker import Checker
 from kb_check.text.salvage import parses
@@ -236,7 +237,7 @@ class _Planter:
             return None
         members = [
             symbol for symbol in self.places.members(place.owner)
-            if "readonly" in symbol.flags and symbol.type in _VALUES and symbol.kind == "property"
+            if READ_ONLY in symbol.flags and symbol.type in _VALUES and symbol.kind == "property"
             and not symbol.array and symbol.name.isidentifier()
         ]  # fmt: skip
         if not members:

@@ -14,7 +14,7 @@ from kb_build.flow.facts import NARROWER
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.lineages import lineage
 from kb_build.symbols.lines import of_evaluated
-from kb_build.symbols.records import EVALUATED
+from kb_build.symbols.records import EVALUATED, HIDDEN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -125,7 +125,7 @@ def _graph(symbols: Iterable[Symbol], uses: Mapping[str, int], names: Mapping[st
             )
             if symbol.path == f"{TYPES}Object.data":
                 graph.edges[owner] += [_Step(symbol.name, name, cost) for name in _OBJECT_DATA]
-        elif symbol.kind == "socket" and symbol.subscripts and "hidden-by-default" not in symbol.flags:
+        elif symbol.kind == "socket" and symbol.subscripts and HIDDEN not in symbol.flags:
             # Those with a pointer have the class that it leads to as target.
             cls = symbol.target if symbol.target.startswith(_SOCKET) else f"{_SOCKET}{symbol.type.title()}"
             graph.sockets[cls].append((symbol.owner.removeprefix(TYPES), symbol.subscripts[0]))

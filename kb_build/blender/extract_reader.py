@@ -32,6 +32,8 @@ from kb_build.symbols.api_names import HANDLERS, TYPES
 from kb_build.symbols.handlers import handlers_type
 from kb_build.symbols.records import (
     NODE_TYPE,
+    OF_CLASS,
+    STATIC,
     EnumItem,
     Link,
     Page,
@@ -65,7 +67,7 @@ _LISTED_NAME = re.compile(r"^\*\*`([A-Z][A-Z0-9_]*)`\*\*", re.MULTILINE)
 _NO_KEYWORDS, _BY_PLACE, _BY_NAME, _OPTIONAL = "no-keywords", "by-place:", "by-name:", "all-optional"
 _REQUIRES, _PLACE_ONLY = "requires:", "place-only:"
 _IN_PLACE_OF_ERROR = "instead of raising"  # which None does as any other value, where it is given
-_METHOD_FLAGS = {"classmethod": ("classmethod",), "staticmethod": ("static",)}
+_METHOD_FLAGS = {"classmethod": (OF_CLASS,), "staticmethod": (STATIC,)}
 # RNA calls each of these a NodeTree; Blender accepts one kind of tree only, which decides the nodes below.
 _TREES = {
     "bpy.types.FreestyleLineStyle.node_tree": "ShaderNodeTree",

@@ -11,11 +11,11 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 from kb_build.symbols.api_names import ID, TYPES
+from kb_build.symbols.records import ANIMATABLE
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Iterator, Mapping
 
-_ANIMATABLE = "animatable"
 _KEPT_IN = "animation_data"
 _ACTION = "action"  # … of that: the Action with the curves
 # Of every struct: its own class, which belongs to no data-block.
@@ -133,4 +133,4 @@ def unmark_unanimated(symbols: Mapping[str, dict[str, Any]]) -> None:
     animated = _with_animation(classes)
     for row in symbols.values():
         if row["kind"] == "property" and row["owner"] in classes and row["owner"] not in animated:
-            row["flags"] = [flag for flag in row.get("flags", ()) if flag != _ANIMATABLE]
+            row["flags"] = [flag for flag in row.get("flags", ()) if flag != ANIMATABLE]

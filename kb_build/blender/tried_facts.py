@@ -15,6 +15,7 @@ from kb_build.symbols.records import (
     AREAS,
     BARE_DATA,
     CALLS,
+    COMPARED,
     EMPTY,
     EMPTY_AT_START,
     ENDS_BEFORE,
@@ -95,7 +96,7 @@ def _add_values(row: _Row, seen: Mapping[str, Any]) -> None:
     if seen.get("chosen"):
         row.pop("default", None)
     else:
-        _flag(row, ("compared",))
+        _flag(row, (COMPARED,))
         row["new_values"] = [*seen.get("values", ()), *seen.get("modes", ())]
 
 
@@ -128,7 +129,7 @@ def _add_refused_default(row: _Row, asked: Mapping[str, Any]) -> None:
 
 def _add_pointer(row: _Row, seen: Mapping[str, Any]) -> None:
     """Adds whether a pointer of new instances is None, and what fills it."""
-    flags = ["compared"]
+    flags = [COMPARED]
     if seen.get("is_empty"):
         row["new_values"] = [{"value": None, "made": seen.get("empty", [])}]
         flags += [f"{FILLED_ON}{label}" for label in seen.get("filled", ())]

@@ -52,7 +52,7 @@ from kb_build.symbols.math_classes import math_class
 from kb_build.symbols.object_data import OBJECT_DATA, OF_EMPTIES, data_class
 from kb_build.symbols.paths import argument_of, is_socket, plain_path
 from kb_build.symbols.python_values import is_new_list
-from kb_build.symbols.records import NODE_TYPE
+from kb_build.symbols.records import ENUM_FLAG, NODE_TYPE, READ_ONLY
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -306,7 +306,7 @@ class Api:
     def _value_type(self, symbol: Symbol) -> Type:
         if symbol.type == "enum":
             value = Plain("str", None, FromProperty(symbol.path))
-            return Sequence("set", value) if "enum-flag" in symbol.flags else value
+            return Sequence("set", value) if ENUM_FLAG in symbol.flags else value
         scalar = _SCALARS.get(symbol.type)
         if scalar is None:
             return self.read_type(symbol.type, symbol.path)
@@ -463,7 +463,7 @@ class Api:
     def _settable_kind(self, cls: str) -> str:
         for name in DISCRIMINANTS:
             member = self.member(cls, name)
-            if member is not None and "readonly" not in member.symbol.flags and member.symbol.type == "enum":
+            if member is not None and READ_ONLY not in member.symbol.flags and member.symbol.type == "enum":
                 base = member.symbol.owner
                 values = (item.identifier for item in member.symbol.enum_items)
                 if any(self.class_of_value(base, value) for value in values):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from kb_build.panels.formulas import TRUE_VALUE, Clause, Need, follows
 from kb_build.schema import TEST_OFF, TEST_ON
 from kb_build.symbols.flags import fillers
-from kb_build.symbols.records import PanelCondition
+from kb_build.symbols.records import READ_ONLY, PanelCondition
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -67,7 +67,7 @@ def _is_of(need: Need, own: set[str], symbols: Symbols) -> bool:
     return owner in own or any(
         f"bpy.types.{member.target}" in own and not any(f".{name} = " in call for call in fillers(member))
         for member in symbols.members(owner)
-        if member.type == "pointer" and "readonly" in member.flags
+        if member.type == "pointer" and READ_ONLY in member.flags
     )
 
 
@@ -95,7 +95,7 @@ def _is_shown_by_scripts_alone(symbol: Symbol, symbols: Symbols) -> bool:
     cls = symbols.symbol(symbol.owner)
     return (
         symbol.kind == "property"
-        and "readonly" not in symbol.flags
+        and READ_ONLY not in symbol.flags
         and cls is not None
         and cls.group == "data"
         and names[0] not in _SHOWN_BY_TEMPLATES

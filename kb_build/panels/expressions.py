@@ -19,6 +19,7 @@ from kb_build.panels.formulas import (
     either_of,
     negated,
 )
+from kb_build.symbols.records import ENUM_FLAG
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -151,7 +152,7 @@ class Conditions:
             if (symbol := self.script.symbols.symbol(path))
             and symbol.kind == "property"
             and not symbol.array
-            and "enum-flag" not in symbol.flags
+            and ENUM_FLAG not in symbol.flags
         }
         return found.pop() if len(found) == 1 else ""
 

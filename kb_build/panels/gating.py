@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from kb_build.flow.facts import DISCRIMINANTS
 from kb_build.panels.formulas import Clause, Clauses, Need, Question, common, consequences
 from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.records import READ_ONLY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -171,7 +172,7 @@ class _Gates:
         cls = symbol.owner.removeprefix(TYPES)
         return (
             symbol.kind == "property"
-            and "readonly" not in symbol.flags
+            and READ_ONLY not in symbol.flags
             and symbol.name not in _NO_SETTINGS
             and not symbol.name.endswith(_UNFOLDED)
             and not symbol.name.startswith(_STATUS)

@@ -10,11 +10,15 @@ from kb_build.symbols.records import (
     ALSO,
     ANY,
     AREAS,
+    COMPARED,
     FILLED_BY,
     FREED_BY,
     GIVEN,
+    HIDDEN,
     LOCKED_ON,
+    NAME_WHEN_SHOWN,
     NOT_ENOUGH,
+    READ_ONLY,
     THEN,
 )
 from kb_build.symbols.unlisted import STAND_INS
@@ -33,8 +37,8 @@ def usual_default(symbol: Symbol) -> Default:
 
 def _own_default(symbol: Symbol) -> Default:
     """RNA's default; None where it is none: of what Blender computes, and of what is not among a property's items."""
-    is_computed = "readonly" in symbol.flags or symbol.subtype == "MATRIX"
-    if (is_computed and _is_of_struct(symbol) and "compared" not in symbol.flags) or not is_listed(symbol):
+    is_computed = READ_ONLY in symbol.flags or symbol.subtype == "MATRIX"
+    if (is_computed and _is_of_struct(symbol) and COMPARED not in symbol.flags) or not is_listed(symbol):
         return None
     return None if is_stand_in(symbol) else symbol.default
 
@@ -58,7 +62,7 @@ def is_stand_in(symbol: Symbol) -> bool:
 
 def is_uncompared(symbol: Symbol) -> bool:
     """Whether the default is RNA's alone, of a property whose new value may be another one."""
-    return _is_of_struct(symbol) and not {"compared", "readonly"} & set(symbol.flags)
+    return _is_of_struct(symbol) and not {COMPARED, READ_ONLY} & set(symbol.flags)
 
 
 def has_unseen_default(symbol: Symbol) -> bool:
@@ -73,7 +77,7 @@ def fillers(symbol: Symbol) -> list[str]:
 
 def is_locked(symbol: Symbol) -> bool:
     """Whether a property cannot be assigned: RNA says so, or Blender refused it on all that was tried."""
-    return "readonly" in symbol.flags or (LOCKED_ON + ANY in symbol.flags and not freed_by(symbol))
+    return READ_ONLY in symbol.flags or (LOCKED_ON + ANY in symbol.flags and not freed_by(symbol))
 
 
 def freed_by(symbol: Symbol) -> str:
@@ -124,7 +128,7 @@ def empty_when_new(symbol: Symbol) -> NewValue | None:
 
 def new_subscript(socket: Symbol) -> str:
     """The subscript that gives a socket of a new node: its name where that works; empty for none."""
-    if "name-when-shown" in socket.flags and "hidden-by-default" not in socket.flags:
+    if NAME_WHEN_SHOWN in socket.flags and HIDDEN not in socket.flags:
         return f'{socket.side}["{socket.label}"]'
     return socket.subscripts[0] if socket.subscripts else ""
 

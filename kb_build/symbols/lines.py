@@ -34,12 +34,14 @@ from kb_build.symbols.records import (
     ENDS_ON_NONE,
     ENDS_WINDOWLESS,
     ENDS_WITHOUT,
+    ENUM_FLAG,
     FACTORY,
     FILLED_ON,
     FREE_ON,
     GIVEN,
     LOCKED_ON,
     LOCKED_WITH,
+    NAME_WHEN_SHOWN,
     NEVER_BY_IDENTIFIER,
     NONE_ON_SOME,
     NOT_ENOUGH,
@@ -97,7 +99,7 @@ def type_text(symbol: Symbol) -> str:
         return f"list[{symbol.target}]" if is_list else f"collection of {symbol.target}"
     if symbol.type == "pointer" and symbol.target:
         return f"pointer → {symbol.target}"
-    if "enum-flag" in symbol.flags:
+    if ENUM_FLAG in symbol.flags:
         return SET
     if symbol.subtype == "BYTE_STRING":
         return "bytes"
@@ -395,7 +397,7 @@ def subscripts_text(socket: Symbol, most: int | None = None) -> str:
     Not more than ``most`` of those that always work.
     """
     shown = [f"`{text}`" for text in socket.subscripts[:most]]
-    if "name-when-shown" in socket.flags:
+    if NAME_WHEN_SHOWN in socket.flags:
         shown.append(f'`{socket.side}["{socket.label}"]` while it is shown')  # behind what always works
     identifier = socket.identifier
     if identifier not in ("", socket.label):

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.records import ENUM_FLAG
+
 if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol
 
@@ -31,7 +33,7 @@ def is_new_list(kind: str, type_: str) -> bool:
 def on_changing(symbol: Symbol, method: str) -> str:
     """A sentence on a method that changes a list or set which each reading makes anew; empty for any other."""
     is_list = is_new_list(symbol.kind, symbol.type)
-    if method not in _CHANGING or not (is_list or (symbol.type == "enum" and "enum-flag" in symbol.flags)):
+    if method not in _CHANGING or not (is_list or (symbol.type == "enum" and ENUM_FLAG in symbol.flags)):
         return ""
     kind = "list" if is_list else "set"
     told = f"Each reading of `{symbol.path}` makes a new {kind}: `{method}` changes that one only."
@@ -50,7 +52,7 @@ def python_class(symbol: Symbol) -> type | None:
         return None
     if symbol.subtype == "BYTE_STRING":
         return bytes
-    if symbol.type == "enum" and "enum-flag" in symbol.flags:
+    if symbol.type == "enum" and ENUM_FLAG in symbol.flags:
         return set
     first = _FIRST_WORD.match(symbol.type)
     return _CLASSES.get(first[0]) if first else None

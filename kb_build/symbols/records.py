@@ -34,6 +34,20 @@ SCALAR_TYPES = frozenset({"boolean", "int", "float", "string", "enum"})
 RNA_TYPES = SCALAR_TYPES | {"pointer", "collection"}
 # How the types of parameters end that are texts for which None can be given, too.
 OR_NONE = " or None"
+# The flags of properties that scripts cannot assign, that can have keyframes, that are a set of items, and that are a
+# pointer which is never None.
+READ_ONLY, ANIMATABLE, ENUM_FLAG, NEVER_NONE = "readonly", "animatable", "enum-flag", "never-none"
+# The flags of functions that are called on a class, and that need neither a class nor an instance.
+OF_CLASS, STATIC = "classmethod", "static"
+# The flag of what was compared with newly made things, so that its default is what these have.
+COMPARED = "compared"
+# The flags of sockets that a new node hides, and that their name gives while they are shown.
+HIDDEN, NAME_WHEN_SHOWN = "hidden-by-default", "name-when-shown"
+# How flags of sockets begin: with the identifier, another name in some mode, and a setting that chooses the type.
+IDENTIFIER, ALSO_NAMED, TYPE_BY = "identifier:", "also-named:", "type-by:"
+# How a flag begins that names what the symbol repeats, or is another name of; and one that names a kind of editor which
+# provides a member of the context.
+SAME_AS, PROVIDED_BY = "same-as:", "from:"
 # How flags begin that say what fills a pointer that is None on a new thing, and on which new things it is not None.
 FILLED_BY = "filled-by:"
 FILLED_ON = "filled-on:"
@@ -338,12 +352,12 @@ class Symbol:
     @property
     def socket_names(self) -> tuple[str, ...]:
         """The names that a socket has in the modes of its node, the usual one first."""
-        return (self.label, *self.flagged("also-named:"))
+        return (self.label, *self.flagged(ALSO_NAMED))
 
     @property
     def identifier(self) -> str:
         """A socket's identifier, which its name need not be; empty for what is no socket."""
-        return "".join(self.flagged("identifier:")[:1])
+        return "".join(self.flagged(IDENTIFIER)[:1])
 
     @property
     def socket_keys(self) -> tuple[str, ...]:
@@ -357,7 +371,7 @@ class Symbol:
     @property
     def type_settings(self) -> tuple[str, ...]:
         """The settings of its node that choose a socket's type; none where it is always the same."""
-        return self.flagged("type-by:")
+        return self.flagged(TYPE_BY)
 
     @property
     def is_called_back(self) -> bool:
@@ -367,12 +381,12 @@ class Symbol:
     @property
     def same_as(self) -> str:
         """The path of what it repeats, or is another name of; empty for none."""
-        return next(iter(self.flagged("same-as:")), "")
+        return next(iter(self.flagged(SAME_AS)), "")
 
     @property
     def editors(self) -> tuple[str, ...]:
         """The kinds of editors that provide a member of the context; ``screen`` stands for all."""
-        return self.flagged("from:")
+        return self.flagged(PROVIDED_BY)
 
     def flagged(self, prefix: str) -> tuple[str, ...]:
         """What the flags that begin with ``prefix`` say."""

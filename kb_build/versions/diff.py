@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from kb_build.blender.call_texts import python_value
+from kb_build.symbols.records import READ_ONLY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -121,7 +122,7 @@ def _facts(symbol: Symbol) -> dict[str, str]:
         "type": _type(symbol),
         "unit": symbol.unit,
         "range": _range(symbol.hard_min, symbol.hard_max),
-        "read-only": "yes" if "readonly" in symbol.flags else "",
+        "read-only": "yes" if READ_ONLY in symbol.flags else "",
         "deprecated": symbol.deprecation.note or "yes" if symbol.deprecation else "",
     }
     # A default of a run-time enumeration or of a constant is the machine's, not the API's.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.lines import with_article
 from kb_build.symbols.paths import last_name
+from kb_build.symbols.records import OF_CLASS, STATIC
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 _MOST = 4
-_OF_CLASS = frozenset({"classmethod", "static"})
+_WITHOUT_INSTANCE = frozenset({OF_CLASS, STATIC})
 
 
 def told_makers(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
@@ -24,7 +25,7 @@ def told_makers(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
     if symbol.kind == "class":
         if calls := _calls(symbol, reader):
             yield f"made by {calls}"
-    elif symbol.kind in {"function", "property"} and _OF_CLASS.isdisjoint(symbol.flags):
+    elif symbol.kind in {"function", "property"} and _WITHOUT_INSTANCE.isdisjoint(symbol.flags):
         owner = reader.symbol(symbol.owner)
         if calls := _calls(owner, reader) if owner else "":
             name = last_name(symbol.owner)
@@ -48,7 +49,7 @@ def _makers(cls: Symbol, reader: BaseReader) -> Iterator[Symbol]:
     for owner in (cls.path, package):
         for entry in reader.members(owner).values():
             symbol = reader.symbol(entry.path) if entry.kind == "function" else None
-            if symbol is None or (owner == cls.path and _OF_CLASS.isdisjoint(symbol.flags)):
+            if symbol is None or (owner == cls.path and _WITHOUT_INSTANCE.isdisjoint(symbol.flags)):
                 continue
             if any(gives.fullmatch(result.type) for result in symbol.returns):
                 yield symbol

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
-from kb_build.symbols.records import DEFINED, DEFINED_ALWAYS, MUST_HAVE
+from kb_build.symbols.records import DEFINED, DEFINED_ALWAYS, MUST_HAVE, OF_CLASS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def definition(symbol: Symbol) -> str:
     """The source by which a class of a script's own defines a function that Blender calls."""
-    is_of_class = "classmethod" in symbol.flags
+    is_of_class = OF_CLASS in symbol.flags
     given = [parameter.name for parameter in symbol.parameters]
     head = f"def {symbol.name}({', '.join(('cls' if is_of_class else 'self', *given))}):"
     lines = [f"class My{symbol.owner.removeprefix(TYPES)}({symbol.owner}):"]

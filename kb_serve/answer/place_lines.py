@@ -14,6 +14,7 @@ from kb_build.symbols.records import (
     EVALUATED,
     FILLED_AT_START,
     NAMES_ITEMS,
+    READ_ONLY,
     WITHOUT_ACTIVE,
     WITHOUT_AREA,
 )
@@ -157,7 +158,7 @@ def _adding(collection: Symbol, reader: BaseReader) -> str:
 
 def _assigned(symbol: Symbol, reader: BaseReader) -> str:
     """The call that makes the one kind of node tree that a pointer takes which is None on a new thing."""
-    is_tree = symbol.target.endswith("NodeTree") and "readonly" not in symbol.flags
+    is_tree = symbol.target.endswith("NodeTree") and READ_ONLY not in symbol.flags
     if not is_tree or empty_when_new(symbol) is None:
         return ""
     target = TYPES + symbol.target

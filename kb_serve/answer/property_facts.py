@@ -7,7 +7,21 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.accepted import accepted_text, part_text
 from kb_build.symbols.flags import is_locked
 from kb_build.symbols.lines import default_text, locked_text, shown_when, subscripts_text, type_text
-from kb_build.symbols.records import KEEPS_ITEMS, NAMES_PART, SAME_VALUE, SETS_ALSO, STOPS, UNBOUNDED
+from kb_build.symbols.records import (
+    ANIMATABLE,
+    ENUM_FLAG,
+    HIDDEN,
+    KEEPS_ITEMS,
+    NAMES_PART,
+    NEVER_NONE,
+    OF_CLASS,
+    READ_ONLY,
+    SAME_VALUE,
+    SETS_ALSO,
+    STATIC,
+    STOPS,
+    UNBOUNDED,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,14 +37,13 @@ _NO_NUMBERS = frozenset(
     {"string", "pointer", "collection", "boolean", "enum"}
 )  # RNA gives some of them units
 _SHOWN_FLAGS = (
-    "readonly",
-    "animatable",
-    "enum-flag",
-    "static",
-    "classmethod",
-    "hidden-by-default",
+    READ_ONLY,
+    ANIMATABLE,
+    ENUM_FLAG,
+    STATIC,
+    OF_CLASS,
+    HIDDEN,
 )
-_NEVER_NONE = "never-none"
 
 
 def facts(symbol: Symbol) -> Iterator[str]:
@@ -49,7 +62,7 @@ def facts(symbol: Symbol) -> Iterator[str]:
         yield f"subtype: {symbol.subtype}"
     if flags := [flag for flag in symbol.flags if flag in _SHOWN_FLAGS and not symbol.is_called_back]:
         yield ", ".join(flags)
-    if _NEVER_NONE in symbol.flags and symbol.type == "pointer" and not is_locked(symbol):
+    if NEVER_NONE in symbol.flags and symbol.type == "pointer" and not is_locked(symbol):
         yield "cannot be set to `None`"
     yield from filter(None, (locked_text(symbol), accepted_text(symbol)))
     if others := symbol.flagged(SETS_ALSO):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import SIDES, STRUCT, TYPES
 from kb_build.symbols.flags import is_stand_in
 from kb_build.symbols.lines import fatal_lines, mode_needed, poll_line, version_meant, written
-from kb_build.symbols.records import BARE_DATA, PAIRS
+from kb_build.symbols.records import BARE_DATA, PAIRS, STATIC
 from kb_serve.answer.arguments import argument_lines, arguments, operator_call
 from kb_serve.answer.asked_values import ASKED_NOTHING
 from kb_serve.answer.budget import AnswerBlock
@@ -194,7 +194,7 @@ class MarkdownRenderer:
         if symbol.is_called_back:
             return definition(symbol)
         owner = symbol.owner
-        if symbol.kind == "function" and owner.startswith(TYPES) and "static" not in symbol.flags:
+        if symbol.kind == "function" and owner.startswith(TYPES) and STATIC not in symbol.flags:
             owner = owner.removeprefix(TYPES)
         return f"{owner}.{symbol.signature}" if owner else symbol.signature
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.symbols.api_names import SIDES, TYPES
 from kb_build.symbols.lines import written
-from kb_build.symbols.records import PAIRS
+from kb_build.symbols.records import HIDDEN, PAIRS
 from kb_serve.reader import EXTEND
 
 if TYPE_CHECKING:
@@ -342,6 +342,6 @@ class NodeLinks:
         for kind in kinds or ("",):
             for entry in entries:
                 symbol = self._reader.symbol(entry.path) if not kind or entry.type == kind else None
-                if symbol is not None and "hidden-by-default" not in symbol.flags:
+                if symbol is not None and HIDDEN not in symbol.flags:
                     return written(symbol)[len(node) + 1 :]
         return self._items.socket(node, side, kinds)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.symbols.api_names import OBJECT, OPERATORS, TYPES
 from kb_build.symbols.flags import empty_when_new, fillers
-from kb_build.symbols.records import FILLED_ON
+from kb_build.symbols.records import FILLED_ON, READ_ONLY
 from kb_serve.answer.steps.variable_names import OBJ, class_called
 
 if TYPE_CHECKING:
@@ -171,7 +171,7 @@ class PointerFills:
             return Ready([], there)
         made = self._reader.creations([target]).get(target)
         call = made.call if made else self.loading(pointer.target)
-        if "readonly" in pointer.flags or not call.startswith("bpy.data."):
+        if READ_ONLY in pointer.flags or not call.startswith("bpy.data."):
             return None
         variable = self._variables.of(target)
         self._variables.add(target, variable)

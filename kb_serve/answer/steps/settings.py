@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import ID, OPERATORS, TYPES
 from kb_build.symbols.flags import empty_when_new, fillers
 from kb_build.symbols.lines import mode_needed
-from kb_build.symbols.records import EMPTY
+from kb_build.symbols.records import EMPTY, READ_ONLY
 from kb_serve.answer.steps.members import are_settings_seen, call_of, settings_of
 from kb_serve.answer.steps.operators import POINT_CACHE, UNDO
 from kb_serve.answer.steps.parts import parts
@@ -246,7 +246,7 @@ class SettingSteps:
         none.
         """
         is_file = settings_of(f"{TYPES}{pointer.target}", self._reader) == _FILE_ALONE
-        is_taken = is_file and "readonly" not in pointer.flags
+        is_taken = is_file and READ_ONLY not in pointer.flags
         return self._scene.pointers.loading(pointer.target) if is_taken else ""
 
     def _on_another(self, cls: str, pointer: str) -> tuple[str, list[str]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.lines import locked_text
+from kb_build.symbols.records import READ_ONLY
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.changed_by import changed_by
 
@@ -44,7 +45,7 @@ class AssignedProperties:
 
     def _locked(self, path: str) -> str:
         symbol = self._reader.symbol(path)
-        if symbol is None or symbol.kind != "property" or "readonly" in symbol.flags:
+        if symbol is None or symbol.kind != "property" or READ_ONLY in symbol.flags:
             return f"`{path}` is read-only: it cannot be assigned."
         if text := locked_text(symbol):
             return f"`{path}` {text}."

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.records import PROVIDED_BY
+
 if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol
 
@@ -20,7 +22,7 @@ def note_on_absent(member: Symbol) -> str:
     """Where a member of the context is not that every editor gives, and what gives the same there; empty for others,
     of which the answer itself tells the editors.
     """
-    if _ANYWHERE not in member.flagged("from:"):
+    if _ANYWHERE not in member.flagged(PROVIDED_BY):
         return ""
     instead = _WITHOUT_WINDOW.get(member.name, "")
     return (

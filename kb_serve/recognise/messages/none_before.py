@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import terms
 from kb_build.symbols.api_names import OPERATORS, TYPES
 from kb_build.symbols.flags import empty_when_new, fillers
-from kb_build.symbols.records import FILLED_BY, RETURNS_NONE
+from kb_build.symbols.records import FILLED_BY, NEVER_NONE, READ_ONLY, RETURNS_NONE
 from kb_serve.recognise.messages.absent import ANY, WEIGHTY, is_empty_when_new
 from kb_serve.recognise.resolving.bindings import with_bindings
 from kb_serve.recognise.resolving.chains import find_chains
@@ -214,7 +214,7 @@ class NoneBefore:
     def _setting(self, entry: SymbolEntry) -> str:
         """The statement that sets a pointer which is None on new things; empty for other pointers."""
         symbol = self._reader.symbol(entry.path)
-        if symbol is None or "readonly" in symbol.flags or not empty_when_new(symbol):
+        if symbol is None or READ_ONLY in symbol.flags or not empty_when_new(symbol):
             return ""
         made = self._reader.creations([TYPES + entry.target]).get(TYPES + entry.target)
         is_value = made is not None and not made.maker.startswith(OPERATORS)  # operators return no thing
@@ -246,7 +246,7 @@ class NoneBefore:
             entry
             for kind in kinds
             for entry in self._reader.pointing_at(kind)
-            if entry.group != "ui" and not self._is_flagged(entry, "never-none")
+            if entry.group != "ui" and not self._is_flagged(entry, NEVER_NONE)
         ]
         return [entry for entry in holders if entry.owner != TYPES + cls] or holders
 

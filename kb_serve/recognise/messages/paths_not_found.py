@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import ID
+from kb_build.symbols.records import ANIMATABLE
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.names.corrections import nearest
 
@@ -12,7 +13,6 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
 
-_ANIMATABLE = "animatable"
 _MOST_KINDS = 8  # of data-blocks, those that scripts use most
 
 
@@ -43,4 +43,4 @@ class PathsNotFound:
 
     def _is_animated(self, path: str) -> bool:
         symbol = self._reader.symbol(path)
-        return symbol is not None and symbol.kind == "property" and _ANIMATABLE in symbol.flags
+        return symbol is not None and symbol.kind == "property" and ANIMATABLE in symbol.flags

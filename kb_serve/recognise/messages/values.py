@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.paths import last_name, plain_path
+from kb_build.symbols.records import READ_ONLY
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.names.likely_values import likely_values
 
@@ -116,7 +117,7 @@ class Values:
         """
         for other, identifier, _ in self._reader.enum_owners(key(name)):
             symbol = self._reader.symbol(other) if identifier == name and "(" not in other else None
-            if symbol is None or "readonly" not in symbol.flags:
+            if symbol is None or READ_ONLY not in symbol.flags:
                 continue
             taken = {item.identifier: item.name for item in symbol.enum_items if item.is_taken}
             if name in taken or not taken.keys() >= {*items}:
