@@ -20,7 +20,21 @@ from starlette.datastructures import Headers
 from agents.blender import docs_client
 from agents.blender.docs_client import DocsGone
 from agents.blender.tool_catalogue import FOR_CLIENTS, ONLINE, TOOLS, WITH_ASSETS
-from agents.blender.tool_profiles import DEFAULT, Profile, first_profile, is_offered
+from agents.blender.tool_profiles import DEFAULT, Profile, is_within
+from agents.blender.tools import (
+    assets,
+    bake,
+    execute,
+    files,
+    job,
+    material_preview,
+    motion_sheet,
+    previews,
+    render,
+    scene_state,
+    trial,
+    uv_preview,
+)
 from agents.blender.tools.base import Call
 from agents.blender.tools.failures import describe_failure
 from simworlds.installed import own_version
@@ -45,24 +59,25 @@ if TYPE_CHECKING:
     _Listing = types.PaginatedRequestParams | None
     _Use = Callable[..., Awaitable[Result]]
 
+# In the order in which models are told of them.
 _HABITS = (
     ("blender_plan_check", "for a whole scene: write its plan first and check it; the prompt make_scene says how"),
     ("blender_docs", "before you use an API name that you have not looked up for this version, when you begin "
      "a topic (cloth, materials), and on any error that is still unclear"),
-    ("blender_execute", "to build in small steps: one object or idea per call, with meaningful names"),
+    execute.TOOL.told,
     ("blender_check", "for scripts and add-ons that you write to files; blender_execute checks its code by itself"),
-    ("blender_scene_state", "for numbers: positions, sizes, modifiers, caches"),
-    ("blender_single_mesh_preview", "to see one mesh from all sides before it is used"),
-    ("blender_scene_layout_preview", "to see the scene; use it after every step that changes what is seen"),
-    ("blender_material_preview", "to see materials as they render, in neutral light, before the scene has any"),
-    ("blender_uv_preview", "to see UV maps: a checker, bounds, stretch, overlap"),
-    ("blender_trial", "to try physics over some frames before you bake it: numbers, pictures, what a bake will take"),
-    ("blender_bake", "for physics, before you judge motion; never jump to a frame of an unbaked simulation"),
-    ("blender_motion_sheet_preview", "to see and measure motion over time"),
-    ("blender_assets", "before you model what the user's asset library may have"),
-    ("blender_save", "when a stage is done"),
-    ("blender_render", "last, when everything is in place; start with a still"),
-    ("blender_job", "for a bake or an animation that may take longer than a minute"),
+    scene_state.TOOL.told,
+    previews.SINGLE_MESH.told,
+    previews.SCENE_LAYOUT.told,
+    material_preview.TOOL.told,
+    uv_preview.TOOL.told,
+    trial.TOOL.told,
+    bake.TOOL.told,
+    motion_sheet.TOOL.told,
+    assets.TOOL.told,
+    files.SAVE.told,
+    render.TOOL.told,
+    job.TOOL.told,
 )  # fmt: skip
 _OWN_BLENDER = (
     "You have your own live Blender, without a window. The scene stays from call to call. If Blender crashes or hangs, "
@@ -97,6 +112,15 @@ def _own_suite(sessions: BlenderSessions, *, for_clients: bool) -> Suite:
     return Suite((*TOOLS, *more, *assets, *((ONLINE,) if sessions.is_online else ())))
 
 
+def first_profiles(suite: Suite, team: Team | None) -> dict[str, Profile]:
+    """The smallest profile that has each tool: of the suite, of the team, and of the knowledge base."""
+    return {
+        **{tool.name: tool.profile for tool in suite.tools},
+        **dict.fromkeys(team.names if team is not None else (), "build"),
+        **dict.fromkeys(docs_client.NAMES, "docs"),
+    }
+
+
 def instructions(known: Iterable[str], suite: Suite | None = None) -> str:
     """The server's instructions for models: how to work with the tools of these names, of the suite and others."""
     suite = suite or Suite()
@@ -127,7 +151,8 @@ def make_server(
     served = suite or _own_suite(sessions, for_clients=team is not None)
     own = [tool.name for tool in served.tools]
     known = (*own, *(team.names if team is not None else ()), *docs_client.NAMES)
-    names = [name for name in known if is_offered(name, profile)]
+    first = first_profiles(served, team)
+    names = [name for name in known if is_within(first[name], profile)]
 
     @asynccontextmanager
     async def lifespan(_server: Server[None]) -> AsyncGenerator[None]:
@@ -144,9 +169,8 @@ def make_server(
 
     async def call_tool(context: _Context, params: types.CallToolRequestParams) -> types.CallToolResult:
         if params.name not in names:
-            is_known = params.name in known
             raise MCPError(
-                types.INVALID_PARAMS, _not_offered(params.name, names, profile if is_known else None)
+                types.INVALID_PARAMS, _not_offered(params.name, names, profile, first.get(params.name))
             )
         if params.name in docs_client.NAMES:
             return await _look_up(docs, params.name, params.arguments)
@@ -155,7 +179,9 @@ def make_server(
             return await anyio.to_thread.run_sync(team.use, params.name, params.arguments or {})
         tool = served.named(params.name)
         if tool is None:
-            raise MCPError(types.INVALID_PARAMS, _not_offered(params.name, names, profile))
+            raise MCPError(
+                types.INVALID_PARAMS, _not_offered(params.name, names, profile, first[params.name])
+            )
         try:
             session = await sessions.get(_client(context))
         except BlenderError as error:
@@ -241,12 +267,12 @@ def _prompting(team: Team) -> dict[str, Any]:
     return {"on_list_prompts": list_prompts, "on_get_prompt": get_prompt, "on_completion": complete}
 
 
-def _not_offered(name: str, offered: Iterable[str], profile: Profile | None) -> str:
-    """Why there is no such tool; ``profile`` is the one that leaves it out, None for a name of no tool at all."""
-    if profile is not None:
+def _not_offered(name: str, offered: Iterable[str], profile: Profile, first: Profile | None) -> str:
+    """Why there is no such tool; ``first`` is the smallest profile that has it, None for a name of no tool at all."""
+    if first is not None:
         return (
             f"{name} is not among the tools that this server was started with (--tools {profile}). Restart it with "
-            f"--tools {first_profile(name)}."
+            f"--tools {first}."
         )
     return f"There is no tool {name[:80]!r}. Available: {', '.join(offered)}."
 

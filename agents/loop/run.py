@@ -17,6 +17,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from agents.blender.saved_files import move_saved
+from agents.blender.tool_catalogue import BY_NAME
 from agents.blender.tools.scene_order import words_of
 from agents.loop.acceptance import AcceptanceRecord
 from agents.loop.edit.baseline import told_since
@@ -69,8 +70,9 @@ _TIME_LEFT = "About {} minutes are left; then the run ends with what stands."
 _UNUSED = "Not saved, since nothing uses it any more: {} (use it, or set its use_fake_user, to keep it)."
 SCENE = "scene.blend"
 _MOST_WORDS = 60  # of an instruction
-_LOOKS = ("blender_scene_state", "preview")  # a reviewer sees, and nothing else
-_SHOWING = (*_LOOKS, VERIFY)  # what these say follows from the scene and their arguments alone
+# What a reviewer sees with, and nothing else; what the verifier says follows from the scene alone, too.
+_LOOKS = frozenset(tool.name for tool in BY_NAME.values() if tool.shows_scene)
+_SHOWING = _LOOKS | {VERIFY}
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,7 +240,7 @@ class Run:
                     self._seen.clear()
                     self.is_changed = True
                 self._checkpoint = kept
-            elif not outcome.failed and any(word in name for word in _SHOWING):
+            elif not outcome.failed and name in _SHOWING:
                 self._seen[_call(name, asked)] = replace(outcome, seconds=0.0)
 
     def keep_stills(self, outcome: ToolOutcome) -> None:
@@ -431,11 +433,7 @@ class RoleTools:
             without = (CHECK, *_EXCHANGE, *(() if run.options.verifier else (VERIFY,)))
             self._names = [name for name in run.tools.names if name not in without]
         elif role == reviewer.NAME:
-            self._names = [
-                name
-                for name in run.tools.names
-                if run.tools.is_read_only(name) and any(word in name for word in _LOOKS)
-            ]
+            self._names = [name for name in run.tools.names if name in _LOOKS]
 
     @property
     def offered(self) -> tuple[Tool, ...]:

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 from agents.blender import plan_check
 from agents.blender.attached.tool_catalogue import TOOLS as ATTACHED_TOOLS
-from agents.blender.team import PROMPTS
+from agents.blender.server import Suite, first_profiles
+from agents.blender.team import PROMPTS, Team
 from agents.blender.tool_catalogue import FOR_CLIENTS, ONLINE, TOOLS, WITH_ASSETS
-from agents.blender.tool_profiles import DEFAULT, PROFILES, first_profile, is_offered
+from agents.blender.tool_profiles import DEFAULT, PROFILES, is_within
 from agents.plan.scene import ScenePlan
 from docs.generate.markdown import GENERATED, page, schema_table, table
 from kb_serve.served_tools import TOOL_NAMES, listing
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
     from mcp_types import PromptArgument, Tool
 
-    from agents.blender.tool_profiles import Profile
     from agents.blender.tools.base import BlenderTool
 
 
@@ -122,22 +122,19 @@ def _profiles() -> Iterator[str]:
         "lists tools with their bounds."
     )
     names = [*TOOL_NAMES, *(tool.name for tool in (*TOOLS, *FOR_CLIENTS)), plan_check.NAME]
+    first = first_profiles(Suite((*TOOLS, *FOR_CLIENTS)), Team())
     yield table(
         ("profile", "tools", "those that it adds"),
         [
             (
                 f"`{profile}`" + (" (default)" if profile == DEFAULT else ""),
-                str(sum(is_offered(name, profile) for name in names)),
-                _added(names, profile),
+                str(sum(is_within(first[name], profile) for name in names)),
+                ", ".join(f"`{name}`" for name in names if first[name] == profile),
             )
             for profile in PROFILES
         ],
     )
     yield f"`--assets` adds `{WITH_ASSETS.name}`, `--online` also `{ONLINE.name}`."
-
-
-def _added(names: Iterable[str], profile: Profile) -> str:
-    return ", ".join(f"`{name}`" for name in names if first_profile(name) == profile)
 
 
 def _blender_tool(entry: BlenderTool) -> list[str]:

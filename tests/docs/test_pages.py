@@ -13,9 +13,9 @@ import pytest
 from places import REPO
 
 from agents.blender import plan_check
-from agents.blender.team import PROMPTS
+from agents.blender.server import Suite, first_profiles
+from agents.blender.team import PROMPTS, Team
 from agents.blender.tool_catalogue import FOR_CLIENTS, TOOLS
-from agents.blender.tool_profiles import first_profile
 from agents.protocol.rules.catalogue import RULES
 from agents.protocol.tolerances import TOLERANCES
 from docs.generate.pages import outdated, pages, write
@@ -110,9 +110,10 @@ def test_the_readme_says_which_tools_are_only_in_the_largest_profile() -> None:
     rows = [line.split("|")[1] for line in readme.splitlines() if line.startswith("| `blender_")]
     named = {name: "--tools all" in row for row in rows for name in re.findall(r"`(blender_\w+)`", row)}
     previews = {"blender_scene_layout_preview"}  # whose other sizes stand abbreviated beside it
+    first = first_profiles(Suite((*TOOLS, *FOR_CLIENTS)), Team())
     for name in (*(entry.name for entry in (*TOOLS, *FOR_CLIENTS)), plan_check.NAME):
         if not name.endswith(("_layout_preview", "_object_preview", "_mesh_preview")) or name in previews:
-            assert named[name] is (first_profile(name) == "all"), name
+            assert named[name] is (first[name] == "all"), name
 
 
 @pytest.mark.parametrize("page", ["index.md", "for-researchers.md"])

@@ -11,8 +11,10 @@ import yaml
 from places import REPO
 
 from agents.blender.plan_check import NAME as PLAN_CHECK
+from agents.blender.server import Suite, first_profiles
+from agents.blender.team import Team
 from agents.blender.tool_catalogue import BY_NAME
-from agents.blender.tool_profiles import DEFAULT, is_offered
+from agents.blender.tool_profiles import DEFAULT, is_within
 from agents.plan.part import STAGES
 from agents.protocol.rules.catalogue import RULES
 from agents.protocol.verify_request import plan_from
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
 
 SKILLS = sorted((REPO / "plugin" / "skills").glob("*/SKILL.md"))
 SUPPORTED = ("4.2", "4.3", "4.4", "4.5", "5.0", "5.1", "5.2")
+FIRST = first_profiles(Suite(tuple(BY_NAME.values())), Team())
 TOOLS = {*BY_NAME, *TOOL_NAMES, PLAN_CHECK}
 FENCED = re.compile(r"```(\w+)\n(.*?)```", re.DOTALL)
 INLINE = re.compile(r"`([^`\n]+)`")
@@ -80,7 +83,7 @@ def test_tools_rules_and_stages_are_called_by_their_names(path: Path) -> None:
     named = {name.rstrip("_") for name in re.findall(r"\bblender_\w+", text)}
     assert named
     assert named <= TOOLS
-    assert all(is_offered(name, DEFAULT) for name in named)
+    assert all(is_within(FIRST[name], DEFAULT) for name in named)
     rules = set(re.findall(r"\b[CGVWRT]\d+\b", prose(path)))
     assert rules <= {rule.id for rule in RULES}
     if path.parent.name == "simulated-scene":

@@ -34,12 +34,6 @@ if TYPE_CHECKING:
     from agents.blender.tools.base import Call, CallContext, Result
 
 _LISTED = 6
-_NARROWED = {
-    "blender_single_mesh_preview": "object",
-    "blender_object_preview": "object",
-    "blender_system_layout_preview": "system",
-    "blender_scene_layout_preview": "subjects",
-}
 _MOST_OBJECTS, _MOST_SUMMARIZED = 1000, 10_000  # whose state is read while the user's window waits
 _MOST_READ = 2000  # whose state is read in a moment, in the copy
 OPENING = (
@@ -51,16 +45,16 @@ OPENING = (
 HABITS = (
     (view.NAME, "first, and whenever the user speaks of 'this' or 'here': what they see and have selected"),
     ("blender_docs", "before you use an API name that you have not looked up for this version"),
-    ("blender_scene_state", "for numbers: positions, sizes, modifiers, caches"),
-    ("blender_execute", "to build in small steps: one object or idea per call, with meaningful names"),
-    ("blender_scene_layout_preview", "to see the scene from all sides, without moving the user's view"),
-    ("blender_motion_sheet_preview", "to see and measure motion over time"),
+    scene_state.TOOL.told,
+    execute.TOOL.told,
+    (previews.SCENE_LAYOUT.name, "to see the scene from all sides, without moving the user's view"),
+    motion_sheet.TOOL.told,
     (undo.NAME, "to take back your own steps"),
     (show.NAME, "to point the user to something"),
-    ("blender_bake", "for physics, before you judge motion; the user's window waits, unless it is a fluid"),
-    ("blender_save", "to save a copy; the user saves their own file"),
-    ("blender_render", "last, from a copy; start with a still"),
-    ("blender_job", "for a bake or an animation that may take longer than a minute"),
+    (bake.TOOL.name, "for physics, before you judge motion; the user's window waits, unless it is a fluid"),
+    (files.SAVE.name, "to save a copy; the user saves their own file"),
+    (render.TOOL.name, "last, from a copy; start with a still"),
+    job.TOOL.told,
 )
 
 
@@ -159,7 +153,10 @@ def _only_attached(*_: Any) -> Result:
 ATTACHED: tuple[AttachedTool, ...] = (
     _own(view.NAME, "See what the user sees", view, read_only=True),
     AttachedTool(scene_state.TOOL, _scene_state),
-    *(_looking(tool, _NARROWED[tool.name]) for tool in previews.TOOLS),
+    _looking(previews.SINGLE_MESH, "object"),
+    _looking(previews.OBJECT, "object"),
+    _looking(previews.SYSTEM_LAYOUT, "system"),
+    _looking(previews.SCENE_LAYOUT, "subjects"),
     _looking(material_preview.TOOL, "objects"),
     _looking(uv_preview.TOOL, "objects"),
     _looking(motion_sheet.TOOL, "actors"),

@@ -224,4 +224,11 @@ def _request(
     }
 
 
-TOOL = BlenderTool(NAME, "Search and use assets", DESCRIPTION, AssetArguments, run)
+TOOL = BlenderTool(
+    NAME,
+    "Search and use assets",
+    DESCRIPTION,
+    AssetArguments,
+    run,
+    habit="before you model what the user's asset library may have",
+)

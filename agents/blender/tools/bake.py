@@ -111,4 +111,12 @@ def _cache(cache: dict[str, Any]) -> str:
     return f"{line}; {cache['bodies_moved']} of {cache['bodies']} bodies move" if "bodies" in cache else line
 
 
-TOOL = BlenderTool("blender_bake", "Bake physics", DESCRIPTION, BakeArguments, run, destructive=True)
+TOOL = BlenderTool(
+    "blender_bake",
+    "Bake physics",
+    DESCRIPTION,
+    BakeArguments,
+    run,
+    destructive=True,
+    habit="for physics, before you judge motion; never jump to a frame of an unbaked simulation",
+)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from agents.blender.assets.library import AssetLibrary
     from agents.blender.supervisor import Supervisor
+    from agents.blender.tool_profiles import Profile
     from simworlds.sandbox.blender_process import Progress, WorkerReply
     from simworlds.sandbox.replies import Reader, T
 
@@ -144,6 +145,8 @@ class BlenderTool:
     """A tool of the suite (paper, Table "Tool suite"). ``run`` raises BlenderError.
 
     ``destructive``: it may remove or replace what was there. ``open_world``: it reaches beyond this machine.
+    ``shows_scene``: what it returns follows from the scene and its arguments alone. ``profile``: the smallest one that
+    has it. ``habit``: when to use it, for a server's instructions.
     """
 
     name: str
@@ -154,6 +157,14 @@ class BlenderTool:
     read_only: bool = False
     destructive: bool = False
     open_world: bool = False
+    shows_scene: bool = False
+    profile: Profile = "build"
+    habit: str = ""
+
+    @property
+    def told(self) -> tuple[str, str]:
+        """Its name, and when to use it."""
+        return self.name, self.habit
 
 
 def parse(tool: BlenderTool, arguments: dict[str, Any] | None) -> Arguments:

@@ -176,4 +176,5 @@ TOOL = BlenderTool(
     ExecuteArguments,
     run,
     destructive=True,
+    habit="to build in small steps: one object or idea per call, with meaningful names",
 )

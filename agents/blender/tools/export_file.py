@@ -212,4 +212,12 @@ def _put_in_place(staged: Path, target: Path, before: Path) -> None:
         raise Refusal(f"{target} cannot be written: {error.strerror or error}.") from error
 
 
-TOOL = BlenderTool("blender_export", "Export to a file", DESCRIPTION, ExportArguments, run, destructive=True)
+TOOL = BlenderTool(
+    "blender_export",
+    "Export to a file",
+    DESCRIPTION,
+    ExportArguments,
+    run,
+    destructive=True,
+    profile="all",
+)

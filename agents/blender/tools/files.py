@@ -268,5 +268,21 @@ def _cache(cache: CacheReport) -> str:
     return f"{cache.label}: {state}, frames {first}–{last}, {where}"
 
 
-SAVE = BlenderTool("blender_save", "Save the scene", SAVE_DESCRIPTION, SaveArguments, save, destructive=True)
-LOAD = BlenderTool("blender_load", "Open a file", LOAD_DESCRIPTION, LoadArguments, load, destructive=True)
+SAVE = BlenderTool(
+    "blender_save",
+    "Save the scene",
+    SAVE_DESCRIPTION,
+    SaveArguments,
+    save,
+    destructive=True,
+    habit="when a stage is done",
+)
+LOAD = BlenderTool(
+    "blender_load",
+    "Open a file",
+    LOAD_DESCRIPTION,
+    LoadArguments,
+    load,
+    destructive=True,
+    profile="look",
+)

@@ -133,4 +133,11 @@ def describe_facts(facts: ExchangeFacts) -> list[str]:
     return lines
 
 
-TOOL = BlenderTool("blender_import", "Import a file", DESCRIPTION, ImportArguments, run)
+TOOL = BlenderTool(
+    "blender_import",
+    "Import a file",
+    DESCRIPTION,
+    ImportArguments,
+    run,
+    profile="all",
+)

@@ -55,4 +55,12 @@ def _run(context: ToolContext, arguments: JobArguments, call: Call) -> Result:
     raise Refusal("Jobs run beside the calls of a session, in 'simworlds mcp' only.")
 
 
-TOOL = BlenderTool("blender_job", "Run long work", DESCRIPTION, JobArguments, _run, destructive=True)
+TOOL = BlenderTool(
+    "blender_job",
+    "Run long work",
+    DESCRIPTION,
+    JobArguments,
+    _run,
+    destructive=True,
+    habit="for a bake or an animation that may take longer than a minute",
+)

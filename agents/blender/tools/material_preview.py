@@ -185,4 +185,7 @@ TOOL = BlenderTool(
     MaterialArguments,
     run,
     read_only=True,
+    shows_scene=True,
+    profile="look",
+    habit="to see materials as they render, in neutral light, before the scene has any",
 )

@@ -212,4 +212,7 @@ TOOL = BlenderTool(
     MotionSheetArguments,
     run,
     read_only=True,
+    shows_scene=True,
+    profile="look",
+    habit="to see and measure motion over time",
 )

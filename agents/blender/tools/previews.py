@@ -197,6 +197,9 @@ SINGLE_MESH = BlenderTool(
     SingleMeshArguments,
     run_single_mesh,
     read_only=True,
+    shows_scene=True,
+    profile="look",
+    habit="to see one mesh from all sides before it is used",
 )
 OBJECT = BlenderTool(
     "blender_object_preview",
@@ -205,6 +208,8 @@ OBJECT = BlenderTool(
     ObjectArguments,
     run_object,
     read_only=True,
+    shows_scene=True,
+    profile="look",
 )
 _ROOMS = "Closed rooms are cut open."
 SYSTEM_LAYOUT = BlenderTool(
@@ -214,6 +219,8 @@ SYSTEM_LAYOUT = BlenderTool(
     SystemLayoutArguments,
     run_system_layout,
     read_only=True,
+    shows_scene=True,
+    profile="look",
 )
 SCENE_LAYOUT = BlenderTool(
     "blender_scene_layout_preview",
@@ -222,5 +229,8 @@ SCENE_LAYOUT = BlenderTool(
     SceneLayoutArguments,
     run_scene_layout,
     read_only=True,
+    shows_scene=True,
+    profile="look",
+    habit="to see the scene; use it after every step that changes what is seen",
 )
 TOOLS = (SINGLE_MESH, OBJECT, SYSTEM_LAYOUT, SCENE_LAYOUT)

@@ -298,4 +298,12 @@ def _format_frames(frames: list[int]) -> str:
     return ", ".join(map(str, frames[:_NAMED])) + (f" … {frames[-1]}" if len(frames) > _NAMED else "")
 
 
-TOOL = BlenderTool("blender_render", "Render", DESCRIPTION, RenderArguments, run, destructive=True)
+TOOL = BlenderTool(
+    "blender_render",
+    "Render",
+    DESCRIPTION,
+    RenderArguments,
+    run,
+    destructive=True,
+    habit="last, when everything is in place; start with a still",
+)

@@ -280,5 +280,13 @@ def _clipped(text: str, room: int) -> str:
 
 
 TOOL = BlenderTool(
-    "blender_scene_state", "Read the scene", DESCRIPTION, SceneStateArguments, run, read_only=True
+    "blender_scene_state",
+    "Read the scene",
+    DESCRIPTION,
+    SceneStateArguments,
+    run,
+    read_only=True,
+    shows_scene=True,
+    profile="look",
+    habit="for numbers: positions, sizes, modifiers, caches",
 )

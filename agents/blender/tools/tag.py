@@ -131,4 +131,12 @@ def _tags(tags: dict[str, Any]) -> str:
     )
 
 
-TOOL = BlenderTool("blender_tag_object", "Tag for the scene protocol", DESCRIPTION, TagArguments, run)
+# blender_group sets the tags of objects too, in fewer calls.
+TOOL = BlenderTool(
+    "blender_tag_object",
+    "Tag for the scene protocol",
+    DESCRIPTION,
+    TagArguments,
+    run,
+    profile="all",
+)

@@ -191,4 +191,12 @@ def _sample(sample: _Sample) -> str:
     return ", ".join(parts)
 
 
-TOOL = BlenderTool("blender_trial", "Try a simulation", DESCRIPTION, TrialArguments, run, read_only=True)
+TOOL = BlenderTool(
+    "blender_trial",
+    "Try a simulation",
+    DESCRIPTION,
+    TrialArguments,
+    run,
+    read_only=True,
+    habit="to try physics over some frames before you bake it: numbers, pictures, what a bake will take",
+)

@@ -118,4 +118,7 @@ TOOL = BlenderTool(
     UvArguments,
     run,
     read_only=True,
+    shows_scene=True,
+    profile="look",
+    habit="to see UV maps: a checker, bounds, stretch, overlap",
 )

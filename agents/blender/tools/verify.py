@@ -101,4 +101,12 @@ def _plan(data: dict[str, Any] | None) -> ScenePlan | None:
     return plan
 
 
-TOOL = BlenderTool("blender_verify", "Verify the scene", DESCRIPTION, VerifyArguments, run, read_only=True)
+TOOL = BlenderTool(
+    "blender_verify",
+    "Verify the scene",
+    DESCRIPTION,
+    VerifyArguments,
+    run,
+    read_only=True,
+    profile="look",
+)

@@ -26,7 +26,7 @@ from agents.blender import server as served
 from agents.blender.blender_sessions import BlenderSessions, SessionSetup
 from agents.blender.docs_client import DocsClient
 from agents.blender.tool_catalogue import TOOLS
-from agents.blender.tool_profiles import DEFAULT, is_offered
+from agents.blender.tool_profiles import DEFAULT, is_within
 from agents.blender.tools import execute
 from simworlds.sandbox.confined_command import best_sandbox
 
@@ -81,7 +81,7 @@ def said(answer: CallToolResult) -> str:
 async def test_every_tool_of_the_suite_is_listed_beside_the_documentation(client: Client) -> None:
     listed = (await client.list_tools()).tools
     assert [tool.name for tool in listed] == [
-        *(tool.name for tool in TOOLS if is_offered(tool.name, DEFAULT)),
+        *(tool.name for tool in TOOLS if is_within(tool.profile, DEFAULT)),
         "blender_job",
         "blender_plan_check",
         "blender_docs",
