@@ -41,6 +41,8 @@ READ_ONLY, ANIMATABLE, ENUM_FLAG, NEVER_NONE = "readonly", "animatable", "enum-f
 OF_CLASS, STATIC = "classmethod", "static"
 # The flag of what was compared with newly made things, so that its default is what these have.
 COMPARED = "compared"
+# The flag of a property that an add-on has registered.
+RUNTIME = "runtime"
 # The flags of sockets that a new node hides, and that their name gives while they are shown.
 HIDDEN, NAME_WHEN_SHOWN = "hidden-by-default", "name-when-shown"
 # How flags of sockets begin: with the identifier, another name in some mode, and a setting that chooses the type.

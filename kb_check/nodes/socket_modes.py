@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import ID
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.lines import shown_when
-from kb_build.symbols.records import SHOWN_WHEN
+from kb_build.symbols.records import HIDDEN, SHOWN_WHEN
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -48,7 +48,7 @@ def is_internal(api: Api, socket: Symbol, key: str = "") -> bool:
 
     What a node shows of a data-block that it points to, as the passes of a scene, is not its own to decide.
     """
-    is_hidden = "hidden-by-default" in socket.flags and not shown_when(socket)
+    is_hidden = HIDDEN in socket.flags and not shown_when(socket)
     is_given = any(f'"{key or socket.label}"' in subscript for subscript in socket.subscripts)
     return is_hidden and not is_given and not _is_of_data(api, socket.owner)
 

@@ -30,6 +30,7 @@ from kb_build.symbols.api_names import ID, OBJECT, OPERATORS
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import empty_when_new, fillers
 from kb_build.symbols.paths import last_name
+from kb_build.symbols.records import READ_ONLY
 from kb_check.calls.not_ensured import ensuring, not_ensured
 from kb_check.calls.resolved import called_operators, callee_path, member_path
 from kb_check.findings import Finding
@@ -145,7 +146,7 @@ def _is_never_assigned(script: Script, path: str) -> bool:
     symbol = script.api.symbols.symbol(path)
     if symbol is None:
         return False
-    is_assigned = "readonly" not in symbol.flags and script.api.descends(f"{T}{symbol.target}", ID)
+    is_assigned = READ_ONLY not in symbol.flags and script.api.descends(f"{T}{symbol.target}", ID)
     if not is_assigned or not has_plain_operators_only(script):
         return False
     if symbol.name in asked_names(script) or symbol.name in stored_names(script):

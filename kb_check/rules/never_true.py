@@ -31,7 +31,7 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import NODE
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import item_of
-from kb_build.symbols.records import NODE_TYPE
+from kb_build.symbols.records import NODE_TYPE, READ_ONLY
 from kb_check.findings import Finding, Fix
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
@@ -134,7 +134,7 @@ def _class_as_type(script: Script) -> Iterator[Finding]:
 
 def _never_had(symbol: Symbol) -> list[EnumItem]:
     """The items that a property is never read as; none of one that scripts may set."""
-    items = symbol.enum_items if "readonly" in symbol.flags else ()
+    items = symbol.enum_items if READ_ONLY in symbol.flags else ()
     return [item for item in items if not item.is_taken]
 
 

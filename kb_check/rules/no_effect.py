@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Builtin, Function, Instance, Plain, Sequence
 from kb_build.symbols.python_values import on_changing
+from kb_build.symbols.records import READ_ONLY
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
 
@@ -107,7 +108,7 @@ def _pure(script: Script, call: ast.Call, symbol: Symbol) -> Finding:
 
 def _compared(script: Script, node: ast.Compare) -> Iterator[Finding]:
     symbol = _symbol_at(script, node.left)
-    if symbol is None or symbol.kind != "property" or "readonly" in symbol.flags:
+    if symbol is None or symbol.kind != "property" or READ_ONLY in symbol.flags:
         return
     left, right = script.span(node.left), script.span(node.comparators[0])
     between = type(left)(left.end_line, left.end_column, right.line, right.column)

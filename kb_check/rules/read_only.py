@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.types import Instance
 from kb_build.symbols.api_names import HANDLERS, TYPES
 from kb_build.symbols.flags import freed_by, is_locked
-from kb_build.symbols.records import FREE_ON
+from kb_build.symbols.records import FREE_ON, READ_ONLY
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
 from kb_check.running.raised import LACKS
@@ -108,7 +108,7 @@ def _is_fixed_array(symbol: Symbol) -> bool:
     """Whether Blender writes what is assigned to a part into a property that cannot be assigned. A whole row of a
     matrix it lets be assigned, and forgets.
     """
-    return symbol.kind == "property" and "readonly" in symbol.flags and len(symbol.array) == 1
+    return symbol.kind == "property" and READ_ONLY in symbol.flags and len(symbol.array) == 1
 
 
 def _locked(script: Script, row: Resolution, symbols: list[Symbol | None]) -> Iterator[Finding]:

@@ -27,6 +27,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.symbols.api_names import ID, OBJECT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import last_name
+from kb_build.symbols.records import ANIMATABLE
 from kb_check.calls.sites import calls
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
@@ -154,7 +155,7 @@ def _of_end(script: Script, followed: Followed, path: str) -> _Fault | None:
     """
     if path.startswith(f"{_KEPT_IN}.drivers[") or not followed.properties:
         return None
-    if any("animatable" in symbol.flags for symbol in followed.properties):
+    if any(ANIMATABLE in symbol.flags for symbol in followed.properties):
         return None
     first = followed.properties[0]
     if first.kind == "function":

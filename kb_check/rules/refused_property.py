@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.types import ClassObject
 from kb_build.symbols.api_names import ID
 from kb_build.symbols.api_names import TYPES as T
-from kb_build.symbols.records import RNA_TYPES
+from kb_build.symbols.records import RNA_TYPES, RUNTIME
 from kb_check.calls.resolved import callee_path
 from kb_check.calls.sites import calls
 from kb_check.findings import Finding, Fix
@@ -100,7 +100,7 @@ def _taken_names(script: Script, targets: Sequence[ast.expr]) -> Iterator[Findin
         if not script.api.descends(kind.cls, ID):
             continue
         symbol = script.api.symbols.symbol(f"{kind.cls}.{target.attr}")
-        if symbol and symbol.type in RNA_TYPES and "runtime" not in symbol.flags:
+        if symbol and symbol.type in RNA_TYPES and RUNTIME not in symbol.flags:
             told = (
                 f"`{symbol.path}` is Blender's own: it refuses another property of that name. Choose another."
             )

@@ -36,6 +36,7 @@ from kb_build.symbols.api_names import ID, NODE, OPERATORS
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import usual_default
 from kb_build.symbols.paths import last_name
+from kb_build.symbols.records import READ_ONLY
 from kb_build.symbols.taken import NEVER, Setting
 from kb_check.calls.resolved import called_operators, callee_path, member_path
 from kb_check.calls.sites import calls_not_ready_for
@@ -183,7 +184,7 @@ def _setting(script: Script, symbol: Symbol, item: EnumItem) -> _Setting | None:
             return None
         return _Setting(symbol.path, other, frozenset(setting.values + more.values), where.how == "only")
     other = script.api.symbols.symbol(f"{symbol.owner}.type")
-    if not where.deciding_things or other is None or "readonly" in other.flags:
+    if not where.deciding_things or other is None or READ_ONLY in other.flags:
         return None
     owner = script.api.symbols.symbol(symbol.owner)
     what = owner.label.lower().split() if owner else []

@@ -14,6 +14,7 @@ from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, Module, Plain, members
 from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.paths import item_of, split_path
+from kb_build.symbols.records import READ_ONLY
 from kb_check.findings import Edit, Fix, Span
 from kb_check.names.uses import are_refused
 from kb_check.script import once_per_script
@@ -194,7 +195,7 @@ def _is_refused(script: Script, row: Resolution, replacement: str) -> bool:
     """
     value = _assigned(row)
     symbol = script.api.symbols.symbol(replacement)
-    if row.kind == "store" and symbol is not None and "readonly" in symbol.flags:
+    if row.kind == "store" and symbol is not None and READ_ONLY in symbol.flags:
         return True
     if symbol is not None and isinstance(row.node, ast.Attribute) and are_refused(script, row.node, symbol):
         return True

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.flags import usual_default
 from kb_build.symbols.lines import switches
+from kb_build.symbols.records import COMPARED
 from kb_check.findings import Finding
 from kb_check.rule import Rule
 from kb_check.running.out_of_sight import computes_names
@@ -60,7 +61,7 @@ def _switch(script: Script, path: str) -> Symbol | None:
         if gate is None or not reader.descends(path.rpartition(".")[0], gate.owner):
             continue
         values = [new.value for new in gate.new_values] or [usual_default(gate)]
-        if "compared" in gate.flags and all(value is False for value in values):
+        if COMPARED in gate.flags and all(value is False for value in values):
             return gate
     return None
 

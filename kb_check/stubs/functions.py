@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, SAME_CLASS
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.records import OF_CLASS, STATIC
 from kb_check.stubs.annotations import ANY, MAYBE_NONE, RNA_TYPES
 from kb_check.stubs.names import docstring, is_writable
 from kb_serve.signatures import signature_arguments
@@ -160,9 +161,9 @@ class Functions:
         """How a function is bound: method, class, static, or function."""
         if not owner:
             return "function"
-        if "classmethod" in symbol.flags or ("static" in symbol.flags and owner in DERIVED_BY_SCRIPTS):
+        if OF_CLASS in symbol.flags or (STATIC in symbol.flags and owner in DERIVED_BY_SCRIPTS):
             return "class"
-        return "static" if "static" in symbol.flags else "method"
+        return "static" if STATIC in symbol.flags else "method"
 
     def define(self, symbol: Symbol, owner: str = "") -> str:
         """A function's definition."""

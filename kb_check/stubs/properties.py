@@ -12,7 +12,7 @@ from kb_build.flow.api import ARRAY
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES
 from kb_build.flow.types import Instance, Sequence
 from kb_build.symbols.api_names import TYPES as T
-from kb_build.symbols.records import RNA_TYPES
+from kb_build.symbols.records import NEVER_NONE, READ_ONLY, RNA_TYPES
 from kb_check.stubs.annotations import ANY, ITEMS, MAYBE_NONE
 from kb_check.stubs.families import OBJECT_DATA_FAMILY
 from kb_check.stubs.names import docstring
@@ -64,7 +64,7 @@ class Properties:
     def _is_read_only(symbol: Symbol) -> bool:
         # What a script's own class sets when it is defined.
         is_own = symbol.owner in DERIVED_BY_SCRIPTS and symbol.name.startswith("bl_")
-        return "readonly" in symbol.flags and not is_own
+        return READ_ONLY in symbol.flags and not is_own
 
     def _types(self, symbol: Symbol, kind: Type) -> tuple[str, str]:
         """What a property gives, and what it takes."""
@@ -82,7 +82,7 @@ class Properties:
     def _pointer(self, symbol: Symbol, cls: str, given: str) -> tuple[str, str]:
         if given == ANY:
             return ANY, ANY
-        if "never-none" in symbol.flags:
+        if NEVER_NONE in symbol.flags:
             return given, cls
         sure = symbol.path in _NEVER_NONE or "|" in given
         return (given if sure else f"{given} | {MAYBE_NONE}"), f"{cls} | None"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.facts import NODES_WITH_SOCKETS_OF_THEIR_OWN
 from kb_build.flow.types import Instance
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.records import NEVER_BY_IDENTIFIER
 
 if TYPE_CHECKING:
     from kb_build.flow.api import Api
@@ -47,7 +48,7 @@ class Sockets:
             text = kind.cls if isinstance(kind, Instance) else self._any
             keys = {
                 *symbol.socket_names,
-                *(() if "identifier-never" in symbol.flags else (symbol.identifier,)),
+                *(() if NEVER_BY_IDENTIFIER in symbol.flags else (symbol.identifier,)),
                 *(_subscript(written, side) for written in symbol.subscripts),
             }
             for one in keys - {"", None}:

@@ -11,7 +11,7 @@ from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, members
 from kb_build.symbols.api_names import STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import plain_path
-from kb_build.symbols.records import SCALAR_TYPES
+from kb_build.symbols.records import ENUM_FLAG, NEVER_NONE, READ_ONLY, SCALAR_TYPES
 from kb_check.calls.sites import calls_not_ready_for
 from kb_check.nodes.shown_sockets import socket_classes
 from kb_check.registered.classes import own_classes
@@ -83,7 +83,7 @@ def class_values(script: Script) -> list[Given]:
     for own in own_classes(script):
         for name, value in own.attributes() if own.is_final else ():
             member = script.api.member(own.path, name) if name.startswith("bl_") else None
-            if member and member.symbol.kind == "property" and "readonly" not in member.symbol.flags:
+            if member and member.symbol.kind == "property" and READ_ONLY not in member.symbol.flags:
                 found.setdefault(value, Given(value, (property_taker(member.symbol),)))
     return list(found.values())
 
@@ -102,7 +102,7 @@ def _assignments(script: Script) -> Iterator[Given]:
         value = assigned(row.statement, row.node)
         symbols = [script.api.symbols.symbol(path) for path in paths]
         takers = tuple(property_taker(symbol) for symbol in symbols if symbol and symbol.kind == "property")
-        refused = any("readonly" in taker.symbol.flags for taker in takers)
+        refused = any(READ_ONLY in taker.symbol.flags for taker in takers)
         if value is not None and len(takers) == len(paths) and not refused:
             found, why = _of_socket(script, row.node, takers)
             yield Given(value, found, why)
@@ -130,7 +130,7 @@ def _typed_by_settings(script: Script) -> Iterator[Given]:
         member = (
             script.api.member(shown.classes[0], target.attr) if shown and len(shown.classes) == 1 else None
         )
-        if shown and member and member.symbol.kind == "property" and "readonly" not in member.symbol.flags:
+        if shown and member and member.symbol.kind == "property" and READ_ONLY not in member.symbol.flags:
             yield Given(node.value, (property_taker(member.symbol),), shown.why)
 
 
@@ -192,7 +192,7 @@ def property_taker(symbol: Symbol) -> Taker:
     kind, target = symbol.type, ""
     if not symbol.owner.startswith(T):
         return Taker(symbol.path, "", symbol, documented=symbol.type)
-    if kind == "enum" and "enum-flag" in symbol.flags:
+    if kind == "enum" and ENUM_FLAG in symbol.flags:
         kind = "set"
     elif kind == "pointer":
         target = f"{T}{symbol.target}"
@@ -200,7 +200,7 @@ def property_taker(symbol: Symbol) -> Taker:
         return Taker(symbol.path, "", symbol)
     return Taker(
         symbol.path, kind, symbol, target, symbol.array, "", symbol.subtype, symbol.unit,
-        "never-none" not in symbol.flags, symbol.hard_min, symbol.hard_max,
+        NEVER_NONE not in symbol.flags, symbol.hard_min, symbol.hard_max,
     )  # fmt: skip
 
 

@@ -46,7 +46,7 @@ def test_a_bare_flag_is_seen(code: str, is_bare: bool) -> None:
     assert bool(list(bare_flags(code))) is is_bare
 
 
-@pytest.mark.parametrize("part", ["kb_build", "kb_serve", "measurements"])
+@pytest.mark.parametrize("part", ["kb_build", "kb_check", "kb_serve", "measurements"])
 def test_every_flag_has_a_name(part: str) -> None:
     bare = [
         f"{path.relative_to(REPO)}:{line}"
