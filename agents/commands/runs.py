@@ -197,7 +197,7 @@ def resume(run: Path, **given: Any) -> None:
 
 @click.command()
 def runs() -> None:
-    """List the runs, newest first. 'resume', 'show' and 'replay' take the names from any folder."""
+    """List the runs, those worked on last first. 'resume', 'show' and 'replay' take the names from any folder."""
     from agents.blender.launch import runs_folder  # noqa: PLC0415 - not for --help
     from agents.views.run_list import list_runs  # noqa: PLC0415
     from simworlds.terminal.console import Console  # noqa: PLC0415 - not for --help
