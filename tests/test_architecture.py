@@ -395,7 +395,7 @@ LISTS = frozenset(
 CROWDED = {
     "agents/blender": 21,
     "agents/blender/inside/attached": 23,
-    "agents/blender/inside/state": 20,
+    "agents/blender/inside/state": 19,
     "agents/loop": 29,
     "agents/protocol/judging": 17,
     "kb_build/blender/inside": 30,
@@ -403,7 +403,6 @@ CROWDED = {
     "kb_serve/answer": 31,
     "kb_serve/answer/steps": 23,
     "kb_serve/recognise/names": 21,
-    "simworlds": 19,
     "simworlds/llm": 22,
     "simworlds/sandbox": 22,
 }

@@ -13,8 +13,8 @@ from pydantic import Field, model_validator
 
 from agents.blender.readable_files import find_readable
 from agents.blender.second_blender import second_blender
-from simworlds.blend_file import HEAD, begins_blend
 from simworlds.counting import format_list
+from simworlds.formats.blend_file import HEAD, begins_blend
 from simworlds.sandbox.errors import BlenderError, NotThere, Refusal
 from simworlds.sandbox.hostile_ground import DEEPEST, HostileGround, copy_folder, copy_to
 from simworlds.sandbox.replies import Claim, Count, Name, Place

@@ -142,15 +142,12 @@ def _plan_for(scene: Path, given: Path | None) -> ScenePlan | None:
     """The plan that was given, or that of the run whose result ``scene`` is. Raises _CannotCheckError."""
     if given is not None:
         return _plan(given)
-    from agents.loop.journal import NAME, PLAN_NAME  # noqa: PLC0415 - not for --help
-
-    beside = scene.parent / PLAN_NAME
-    if not beside.is_file() or not (scene.parent / NAME).is_file():
-        above = scene.absolute().parent.parent
-        if (above / PLAN_NAME).is_file() and (above / NAME).is_file():
+    beside = _plan_of_run(scene.parent)
+    if beside is None:
+        if above := _plan_of_run(scene.absolute().parent.parent):
             click.echo(
                 "The file is checked without a plan. To check it against that of its run, which asks for what later "
-                f"stages build, too: --plan {above / PLAN_NAME}",
+                f"stages build, too: --plan {above}",
                 err=True,
             )
         return None
@@ -162,6 +159,14 @@ def _plan_for(scene: Path, given: Path | None) -> ScenePlan | None:
         return None
     click.echo(f"The plan is {beside}, of the run that made the file.", err=True)
     return plan
+
+
+def _plan_of_run(folder: Path) -> Path | None:
+    """The plan in a folder, if the folder is a run's."""
+    from agents.loop.journal import NAME, PLAN_NAME  # noqa: PLC0415 - not for --help
+
+    path = folder / PLAN_NAME
+    return path if path.is_file() and (folder / NAME).is_file() else None
 
 
 def _is_of_an_edit(path: Path) -> bool:
@@ -303,7 +308,7 @@ def _draw(blender: Supervisor, report: Report, call: Call, checked: Verification
 def _print_logs(scenes: tuple[Path, ...], logs: list[dict[str, Any]]) -> None:
     """Prints logs of SARIF, one of each scene, as one."""
     from agents.protocol.report.json_report import dump_json  # noqa: PLC0415 - not for --help
-    from simworlds.sarif import sarif_log, tell_apart  # noqa: PLC0415 - likewise
+    from simworlds.formats.sarif import sarif_log, tell_apart  # noqa: PLC0415 - likewise
 
     runs = [run for log in logs for run in log["runs"]]
     tell_apart(runs, [f"simworlds-verify/{scene.as_posix()}/" for scene in scenes])

@@ -58,8 +58,8 @@ def format_event(event: events.Event, run_state: RunState) -> list[str]:  # noqa
         case events.MendWeighed(is_time=False):
             return ["There is no time left to mend that and to render again"]
         case events.SceneRendered():
-            several = event.frames if event.frames and event.frames > 1 else 0
-            frames = f", {describe_frames(several, run_state.film)}" if several else ""
+            rendered = event.frames or 1
+            frames = f", {describe_frames(rendered, run_state.film)}" if rendered > 1 else ""
             return [f"Rendered: {event.path}{frames}, {format_time(event.seconds)}"]
         case events.FinalReviewed(review=review) if review:
             verdict = "accepted" if review.verdict == "accept" else "needs a fix"

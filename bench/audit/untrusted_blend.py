@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench.audit.inside import LARGEST_REPLY
-from simworlds.blend_file import HEAD, begins_blend
+from simworlds.formats.blend_file import HEAD, begins_blend
 from simworlds.sandbox.blender_process import BlenderProcess
 from simworlds.sandbox.confined_command import best_sandbox
 from simworlds.sandbox.errors import (

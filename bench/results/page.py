@@ -22,7 +22,7 @@ from bench.results.evidence import Evidence, evidence_of
 from bench.results.scores import METRICS, TITLES
 from bench.results.tables import NAMES, models, number
 from bench.scenes.spec import CATEGORIES, specs
-from simworlds.html_text import fit_for_html
+from simworlds.formats.html_text import fit_for_html
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

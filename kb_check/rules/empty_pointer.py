@@ -47,7 +47,7 @@ from kb_check.scene.made_here import (
 )
 from kb_check.scene.set_otherwise import set_otherwise
 from kb_check.script import once_for_each, once_per_script
-from kb_check.syntax.bindings import bindings
+from kb_check.syntax.bindings import alias
 from kb_check.syntax.named_before import first_named, first_named_but, stage
 from kb_check.syntax.words import asked_names, keywords_and_texts, named_words, stored_names
 
@@ -239,13 +239,9 @@ def _computes_kinds(script: Script) -> bool:
 
 def _is_made(script: Script, node: ast.expr) -> bool:
     """Whether the script has surely made a thing: by ``new``, or as the active object by the operators of meshes."""
-    if is_primitive_mesh(script, node):
+    if is_primitive(script, node) or is_primitive_mesh(script, node):
         return True
-    if isinstance(node, ast.Name):
-        values = bindings(script).get(node.id, [])
-        if len(values) == 1 and isinstance(values[0], ast.Attribute):
-            return is_primitive(script, node)
-    return is_new(script, node) or is_primitive(script, node)
+    return alias(script, node) is node and is_new(script, node)
 
 
 RULE = Rule("empty-pointer", "warning", "Something read from what is None on a new thing", _check)

@@ -14,7 +14,7 @@ from kb_build.symbols.flags import fillers
 from kb_check.calls.resolved import called_operators, callee_path, calls_only
 from kb_check.scene.active_object import reads_active
 from kb_check.script import once_for_each, once_per_script
-from kb_check.syntax.bindings import bindings
+from kb_check.syntax.bindings import bindings, once_bound
 from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
@@ -103,17 +103,13 @@ def has_plain_operators_only(script: Script) -> bool:
 
 def is_primitive(script: Script, node: ast.expr) -> bool:
     """Whether a thing surely is an object that an operator of meshes has just made."""
-    if isinstance(node, ast.Name):
-        values = bindings(script).get(node.id, [])
-        node = values[0] if len(values) == 1 and values[0] else node
+    node = once_bound(script, node)
     return isinstance(node, ast.Attribute) and _is_active_primitive(script, node)
 
 
 def is_primitive_mesh(script: Script, node: ast.expr) -> bool:
     """Whether a thing surely is the mesh of an object that an operator has just made."""
-    if isinstance(node, ast.Name):
-        values = bindings(script).get(node.id, [])
-        node = values[0] if len(values) == 1 and values[0] else node
+    node = once_bound(script, node)
     return isinstance(node, ast.Attribute) and node.attr == "data" and is_primitive(script, node.value)
 
 

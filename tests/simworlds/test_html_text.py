@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from simworlds.html_text import fit_for_html
+from simworlds.formats.html_text import fit_for_html
 
 
 def test_only_what_html_lacks_and_what_turns_text_is_replaced() -> None:

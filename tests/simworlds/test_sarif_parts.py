@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from simworlds.sarif import invocations, notification, sarif_log, tell_apart, uri_of
+from simworlds.formats.sarif import invocations, notification, sarif_log, tell_apart, uri_of
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from agents.blender.inside.state.sections import SECTIONS
+from agents.blender.inside.readout_sections import SECTIONS
 from agents.blender.tools.scene_fold import series
 from agents.blender.tools.scene_order import bears_words, materials_of
 from simworlds.counting import counted

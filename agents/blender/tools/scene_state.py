@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, cast
 from pydantic import Field
 from pydantic.json_schema import SkipJsonSchema
 
-from agents.blender.inside.state.sections import DATA_BLOCKS, SECTIONS, EntrySection
+from agents.blender.inside.readout_sections import DATA_BLOCKS, SECTIONS, EntrySection
 from agents.blender.tools import scene_dynamics as dynamics
 from agents.blender.tools import scene_words as words
 from agents.blender.tools.base import Arguments, BlenderTool, Call, CallContext, Result

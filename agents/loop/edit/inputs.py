@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from agents.loop.errors import Unusable
-from simworlds.blend_file import HEAD, begins_blend
+from simworlds.formats.blend_file import HEAD, begins_blend
 from simworlds.llm.picture_file import BadPicture, read_picture
 
 if TYPE_CHECKING:

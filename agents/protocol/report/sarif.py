@@ -7,7 +7,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from agents.protocol.report.json_report import finite_fields
-from simworlds.sarif import invocations, notification, sarif_log, sarif_tool, uri_of
+from simworlds.formats.sarif import invocations, notification, sarif_log, sarif_tool, uri_of
 from simworlds.terminal.text import plain
 
 if TYPE_CHECKING:

@@ -30,7 +30,7 @@ from agents.views.report.tables import objects_of, relations_of
 from agents.views.report.timeline import draw_timeline
 from simworlds.counting import counted
 from simworlds.files import write_whole
-from simworlds.html_text import fit_for_html
+from simworlds.formats.html_text import fit_for_html
 from simworlds.llm.spending import SpendingRow as Spent
 from simworlds.terminal.text import shortened
 
@@ -73,6 +73,11 @@ class StepView:
     def is_tool(self) -> bool:
         """Whether it is a tool call."""
         return isinstance(self.step, ToolCall)
+
+    @property
+    def is_shown(self) -> bool:
+        """Whether there is anything to see of it."""
+        return self.is_tool or bool(self.words or self.stop)
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,7 +272,7 @@ def _about(call: ToolCall) -> str:
 def _before_stages(run_state: RunState, gallery: _Gallery) -> BeforeView:
     pictures, numbers = gallery.of(run_state.steps)
     steps = (_step(step, numbers) for step in run_state.steps)
-    return BeforeView(tuple(one for one in steps if one.is_tool or one.words or one.stop), pictures)
+    return BeforeView(tuple(one for one in steps if one.is_shown), pictures)
 
 
 def _stages(run_state: RunState, gallery: _Gallery) -> list[StageView]:
@@ -305,7 +310,7 @@ def _attempt(attempt: Attempt, before: Sequence[Attempt], gallery: _Gallery) -> 
         attempt=attempt,
         told=formatting.describe_attempt(attempt),
         state={"advance": "closed", "abort": "aborted"}.get(taken, "sent-back" if taken else "open"),
-        coder=tuple(one for one in coder if one.is_tool or one.words or one.stop),
+        coder=tuple(one for one in coder if one.is_shown),
         others=tuple(others),
         pictures=pictures,
         changes=tuple((one, code.highlighted(one.diff, "diff")) for one in made),

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from kb_check.command.formats.json_document import dump
 from kb_check.rule import all_rules
-from simworlds.sarif import invocations, notification, sarif_log, sarif_tool, tell_apart, uri_of
+from simworlds.formats.sarif import invocations, notification, sarif_log, sarif_tool, tell_apart, uri_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

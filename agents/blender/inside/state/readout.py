@@ -10,6 +10,7 @@ from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.names import nearest
 from ..blend.protocol_tags import ROLE
+from ..readout_sections import DATA_BLOCKS, SECTIONS
 from .animation import animation_facts, unused_actions
 from .appearance import camera_facts, light_facts, material_facts, render_facts, world_facts
 from .fingerprint import data_blocks
@@ -17,7 +18,6 @@ from .likely_mistakes import notes_of
 from .object_entries import SceneObjects, object_facts, tags_of, tree_of
 from .physics_entries import physics_of, rigid_body_world_facts
 from .rna_values import number, numbers, shortened, text
-from .sections import DATA_BLOCKS, SECTIONS
 from .world_extents import MOST_INSTANCES, ExtentReader, evaluated_graph
 
 MOST_OBJECTS = 5_000  # of one readout

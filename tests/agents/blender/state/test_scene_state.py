@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from places import REPO
 
-from agents.blender.inside.state.sections import SECTIONS
+from agents.blender.inside.readout_sections import SECTIONS
 from agents.blender.tools.base import Result, parse
 from agents.blender.tools.scene_fit import tokens
 from agents.blender.tools.scene_order import words_of
@@ -1093,7 +1093,7 @@ import sys
 sys.modules["numpy"] = None
 import bpy
 from agents.blender.inside.state.readout import scene_state
-from agents.blender.inside.state.sections import SECTIONS
+from agents.blender.inside.readout_sections import SECTIONS
 wanted = {"detail": "full", "objects": None, "sections": SECTIONS, "parts": True}
 print("objects:", sum(1 for _ in scene_state(wanted, print)["objects"]))
 """

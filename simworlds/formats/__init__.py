@@ -1,0 +1,1 @@
+"""What several parts know of file formats: SARIF, HTML, .blend."""
