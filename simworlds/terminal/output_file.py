@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,9 @@ import click
 
 
 class OutputFile(click.Path):
-    """The path of a file in a folder that is there: a slip of the pen shall make no folders."""
+    """The path of a file in a folder that is there, as a slip of the pen shall make no folders, and that takes files,
+    as the work that the file is for may be long.
+    """
 
     def __init__(self) -> None:
         super().__init__(dir_okay=False, path_type=Path)
@@ -21,4 +24,8 @@ class OutputFile(click.Path):
         folder = path.expanduser().absolute().parent
         if not folder.is_dir():
             self.fail(f"There is no folder {folder}. Make it first, or name another file.", param, ctx)
+        try:
+            tempfile.TemporaryFile(dir=folder).close()
+        except OSError as error:
+            self.fail(f"No file can be written to {folder}: {error.strerror}. Name another one.", param, ctx)
         return path

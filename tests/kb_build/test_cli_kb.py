@@ -240,6 +240,7 @@ def test_two_blenders_are_compared(small: Built) -> None:
         (("kb", "verify", "/etc/passwd"), "/etc/passwd: not readable as a knowledge base"),
         (("kb", "export", "4.5", "--output", "/nowhere/x"), "There is no folder /nowhere."),
         (("kb", "export", "4.5", "--output", "/"), "is a directory"),
+        (("kb", "build", "5.1", "--out", "/proc/base.sqlite"), "No file can be written to /proc:"),
         (("kb", "pack", "--output", "/nowhere/x.md"), "There is no folder /nowhere."),
         (("kb", "merge-summaries", "/nowhere"), "does not exist"),
         (("kb", "merge-summaries", "/etc/passwd"), "/etc/passwd cannot be read as a colleague's summaries"),
