@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from kb_build.flow.facts import DISCRIMINANTS
-from kb_build.panels.formulas import Clause, Clauses, Need, Question, common, consequences
+from kb_build.panels.formulas import All, Answer, Clause, Clauses, Need, Question, common, consequences
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.records import READ_ONLY
 
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from kb_build.flow.symbols import Symbols
     from kb_build.panels.drawing import Place
+    from kb_build.panels.formulas import Formula
     from kb_build.symbols.records import Symbol
 
 # What only hides a part of a panel, or keeps the interface from changing what has an effect all the same, and what
@@ -59,6 +60,8 @@ def gatings_in(places: Iterable[Place], symbols: Symbols) -> dict[str, Gating]:
             if len(place.symbols) > 1 and path.startswith(f"{TYPES}Space"):
                 found[path] = _UNASKED  # a panel is of one editor, and which one is not known
                 continue
+            if len(place.symbols) > 1 and not _has_all_asked(path.rpartition(".")[0], place, symbols):
+                continue
             gates = _Gates(place, path, symbols)
             shown = consequences(place.shown, gates.of)
             if shown is None:
@@ -66,6 +69,23 @@ def gatings_in(places: Iterable[Place], symbols: Symbols) -> dict[str, Gating]:
             active = consequences(place.active, gates.of)
             _add(found, path, Gating(shown, _NEVER if active is None else active))
     return found
+
+
+def _has_all_asked(cls: str, place: Place, symbols: Symbols) -> bool:
+    """Whether a class has what the place asks of the thing whose property it shows, which may be of several classes."""
+    lineage = [*_bases(cls, symbols)]
+    return all(
+        _member(question.text[len(place.owner) :], lineage, symbols)
+        for question in _surely_asked(place.active)
+        if question.symbols and question.owner == place.owner
+    )
+
+
+def _surely_asked(formula: Formula) -> Iterator[Question]:
+    """The questions that are asked whatever the answers to others are."""
+    for part in formula.parts if isinstance(formula, All) else (formula,):
+        if isinstance(part, Answer):
+            yield part.question
 
 
 def merged(parts: Iterable[Mapping[str, Gating]]) -> dict[str, Gating]:

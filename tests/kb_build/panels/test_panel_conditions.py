@@ -376,6 +376,30 @@ def test_what_may_be_another_class_is_not_told_of_each(symbols: BaseSymbols) -> 
     assert asked(symbols, panel(own), of="EditBone.bbone_easein") == ["greyed unless bbone_segments > 1"]
 
 
+@pytest.mark.parametrize(
+    ("of", "expected"),
+    [
+        ("LimitLocationConstraint.min_x", ["greyed unless use_min_x on"]),
+        ("LimitScaleConstraint.min_x", ["greyed unless use_min_x on"]),
+        ("LimitRotationConstraint.min_x", ["greyed unless use_limit_x on"]),
+    ],
+)
+def test_what_has_not_all_that_is_asked_is_not_shown(
+    symbols: BaseSymbols, of: str, expected: list[str]
+) -> None:
+    limits = (
+        "con = context.object.constraints[0]\nsub = layout.row()\nsub.active = con.{}\nsub.prop(con, 'min_x')"
+    )
+    assert (
+        asked(symbols, *(panel(limits.format(name)) for name in ("use_min_x", "use_limit_x")), of=of)
+        == expected
+    )
+    perhaps = (
+        "con = context.object.constraints[0]\nif con.mute or con.use_limit_x:\n    layout.prop(con, 'min_x')"
+    )
+    assert asked(symbols, panel(perhaps), of=of) == []
+
+
 def offered(symbols: BaseSymbols, *bodies: str, operator: str = "fluid.bake_all") -> list[str]:
     """What panels that draw a fluid's domain ask before they offer an operator."""
     before = "domain = context.fluid.domain_settings\n"
