@@ -333,12 +333,13 @@ def _symbol_tables(
     extract: Extract, pages: Sequence[Page], scripts: Callable[[], ScriptUsage]
 ) -> SymbolTables:
     """What a base has of its symbols, with their uses in Blender's scripts and in the guides, the ways to instances
-    that follow from these, and what panels ask.
+    that follow from these, and what settings depend on.
     """
     from kb_build.blender.access_paths import reached_expressions  # noqa: PLC0415 - not when nothing changed
     from kb_build.flow.symbols import SymbolList  # noqa: PLC0415 - loaded ahead
     from kb_build.panels.conditions import panel_conditions  # noqa: PLC0415 - not when nothing changed
     from kb_build.panels.gating import settled  # noqa: PLC0415 - loaded ahead
+    from kb_build.panels.idle import idle_conditions  # noqa: PLC0415 - likewise
     from kb_build.symbols.tables import symbol_tables  # noqa: PLC0415 - likewise
     from kb_build.usage.examples import SymbolUsage  # noqa: PLC0415 - loaded ahead
     from kb_build.usage.usage_index import merged, page_usage, with_aliases  # noqa: PLC0415 - loaded ahead
@@ -356,7 +357,7 @@ def _symbol_tables(
             uses,
             {f"bpy.types.{name}": expression for name, expression in reached.items()},
             extract.names,
-            [*panel_conditions(settled(found.gatings, listed), listed)],
+            [*panel_conditions(settled(found.gatings, listed), listed), *idle_conditions(extract.idle)],
         )
 
     return symbol_tables(symbols, pages, used)

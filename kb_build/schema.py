@@ -16,14 +16,17 @@ from urllib.parse import quote
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCHEMA_VERSION = 16
+SCHEMA_VERSION = 17
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's field for the application a file belongs to
 
 # How a key came about, in the order in which an answer prefers them.
 FORM_PATH, FORM_SHORT, FORM_NAME, FORM_LABEL, FORM_TOPIC = range(5)
 
-# What panels ask of a truth value.
+# What is asked of a truth value.
 TEST_ON, TEST_OFF = "on", "off"
+# What a setting is where what it depends on is otherwise: Blender's panels grey it out, or do not show it; or it has no
+# effect, as was tried.
+Otherwise = Literal["greyed", "hidden", "idle"]
 
 
 class Mark(IntFlag):
@@ -155,11 +158,11 @@ CREATE TABLE uses (
 ) WITHOUT ROWID;
 CREATE TABLE use_counts (path TEXT PRIMARY KEY, uses INTEGER NOT NULL, files INTEGER NOT NULL) WITHOUT ROWID;
 
--- What panels in Blender's own scripts ask of a setting (gate) wherever they let a property be set, or offer an
--- operator, as text: on, 'SUN' or 'SPOT'. Of the rows of one clause any is enough, all clauses must hold. hides:
--- otherwise they do not show it; else they grey it out.
-CREATE TABLE panel_conditions (
-    path TEXT NOT NULL, clause INTEGER NOT NULL, gate TEXT NOT NULL, test TEXT NOT NULL, hides INTEGER NOT NULL,
+-- What a setting (gate) must be, as text: on, 'SUN' or 'SPOT'. Panels in Blender's own scripts ask it wherever they let
+-- a property be set, or offer an operator; or it was tried when the property has an effect. Of the rows of one clause
+-- any is enough, all clauses must hold. otherwise: see Otherwise.
+CREATE TABLE setting_conditions (
+    path TEXT NOT NULL, clause INTEGER NOT NULL, gate TEXT NOT NULL, test TEXT NOT NULL, otherwise TEXT NOT NULL,
     PRIMARY KEY (path, clause, gate, test)
 ) WITHOUT ROWID;
 
@@ -195,7 +198,7 @@ CREATE INDEX symbols_name ON symbols (name, kind);
 CREATE INDEX symbols_target ON symbols (target) WHERE target != '';
 CREATE INDEX symbols_collection ON symbols (collection) WHERE collection != '';
 CREATE INDEX symbols_base ON symbols (base) WHERE base != '';
-CREATE INDEX panel_conditions_gate ON panel_conditions (gate);
+CREATE INDEX setting_conditions_gate ON setting_conditions (gate);
 CREATE INDEX removed_name ON removed (name);
 CREATE INDEX sections_slug ON sections (slug, position);
 CREATE INDEX pages_parent ON pages (parent, position);

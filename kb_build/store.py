@@ -93,7 +93,7 @@ def _write_symbols(connection: sqlite3.Connection, tables: SymbolTables) -> None
     _insert(connection, "enum_items", tables.enum_items, 4)
     _insert(connection, "operator_arguments", tables.operator_arguments, 2)
     _insert(connection, "creation", tables.creation, 4)
-    _insert(connection, "panel_conditions", tables.conditions, 5)
+    _insert(connection, "setting_conditions", tables.conditions, 5)
 
 
 def _places(pages: Sequence[Page]) -> dict[str, tuple[str, int]]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 from kb_build.schema import FORM_NAME, Mark, NoBase, open_read_only, unpack
 from kb_build.symbols.api_names import COLLECTION, TYPES
 from kb_build.symbols.object_data import data_class
-from kb_build.symbols.records import Page, PanelCondition, Symbol, page_from_json, symbol_from_json
+from kb_build.symbols.records import Page, SettingCondition, Symbol, page_from_json, symbol_from_json
 from kb_serve.errors import BadQuery, BaseMissing, BaseUnreadable
 from kb_serve.kept_rows import KeptRows
 from simworlds.how_to_get_bases import how_to_get_again, how_to_get_at
@@ -21,6 +21,8 @@ from simworlds.how_to_get_bases import how_to_get_again, how_to_get_at
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Sequence
     from pathlib import Path
+
+    from kb_build.schema import Otherwise
 
 _Record = TypeVar("_Record")
 _Value = TypeVar("_Value")
@@ -485,20 +487,18 @@ class BaseReader:
         """How often Blender's own scripts use each of some symbols; those that they do not use are left out."""
         return dict(self.rows_of("SELECT path, uses FROM use_counts WHERE path", paths))
 
-    def panel_tests(self, path: str) -> list[PanelCondition]:
-        """What Blender's panels ask before they let a property be set, by clause."""
-        sql = "SELECT path, clause, gate, test, hides FROM panel_conditions WHERE path = ? ORDER BY clause"
-        return [
-            PanelCondition(path, clause, gate, test, bool(hides))
-            for path, clause, gate, test, hides in self.rows(sql, path)
-        ]
+    def conditions_of(self, path: str) -> list[SettingCondition]:
+        """What other settings a property or operator depends on, by clause."""
+        sql = "SELECT path, clause, gate, test, otherwise FROM setting_conditions WHERE path = ? ORDER BY clause"
+        return [SettingCondition(*row) for row in self.rows(sql, path)]
 
-    def panels_let_set(self, gate: str, test: str) -> list[str]:
-        """The properties that Blender's panels let be set only if ``gate`` is ``test``, by path."""
-        sql = """SELECT path FROM panel_conditions AS own WHERE gate = ? AND test = ? AND NOT EXISTS (
-            SELECT 1 FROM panel_conditions WHERE path = own.path AND clause = own.clause AND gate != own.gate
+    def depending_on(self, gate: str, test: str, *otherwise: Otherwise) -> list[str]:
+        """The properties that are ``otherwise`` unless ``gate`` is ``test``, by path."""
+        sql = f"""SELECT path FROM setting_conditions AS own
+            WHERE gate = ? AND test = ? AND otherwise IN ({",".join("?" * len(otherwise))}) AND NOT EXISTS (
+            SELECT 1 FROM setting_conditions WHERE path = own.path AND clause = own.clause AND gate != own.gate
             ) ORDER BY path"""
-        return [row[0] for row in self.rows(sql, gate, test)]
+        return [row[0] for row in self.rows(sql, gate, test, *otherwise)]
 
     def passage(self, path: str) -> tuple[str, int, int] | None:
         """(slug, number of the section, line of its text) of the place in the manual that is about a symbol."""

@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kb_build.blender.docstrings import Docstring
+    from kb_build.panels.idle import Need
 
 _SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
 _SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
@@ -90,6 +91,7 @@ class Extract:
     ``names``: class → the name that Blender itself gives to a new one. ``places``: class of nodes → class of the
     data-block that has such a node in its tree from the start.
     ``still_works``: (former path, the symbol that it gives now) of former names that this Blender still takes.
+    ``idle``: setting without an effect → other settings of the same thing of which one gives it one.
     ``addon_names``: add-on that Blender brings, and that is not on from the start → the paths that it registers.
     """
 
@@ -105,6 +107,7 @@ class Extract:
     names: Mapping[str, str] = field(default_factory=dict[str, str])
     places: Mapping[str, str] = field(default_factory=dict[str, str])
     addon_names: Mapping[str, list[str]] = field(default_factory=dict[str, "list[str]"])
+    idle: Mapping[str, list[Need]] = field(default_factory=dict[str, "list[Need]"])
 
 
 @dataclass(slots=True)
@@ -118,6 +121,7 @@ class _Raw:
     faults: list[str] = field(default_factory=list)
     still_works: list[tuple[str, str]] = field(default_factory=list)
     addon_names: dict[str, list[str]] = field(default_factory=dict[str, "list[str]"])
+    idle: dict[str, list[Need]] = field(default_factory=dict[str, "list[Need]"])
     # enumeration → what was tried with settings beside its struct (see enum_neighbours)
     neighbours: dict[str, dict[str, Any]] = field(default_factory=dict[str, "dict[str, Any]"])
     # record → class → what it says of it
@@ -155,6 +159,8 @@ def _keep(raw: _Raw, record: str, row: dict[str, Any]) -> None:
             raw.by_class[record][row["path"].removeprefix(TYPES)] = row["name"]
         case "still_works":
             raw.still_works.append((row["path"], row["taken_as"]))
+        case "idle":
+            raw.idle[row["path"]] = [(name, value) for name, value in row["needs"]]
         case "addon":
             raw.addon_names[row["name"]] = row["paths"]
         case "template":
@@ -383,6 +389,7 @@ def read_extract(path: Path) -> Extract:
         faults=tuple(raw.faults),
         still_works=tuple(raw.still_works),
         addon_names=raw.addon_names,
+        idle=raw.idle,
         scripts=raw.header.get("scripts") or "",
         names=raw.by_class["own_name"],
         places=raw.by_class["stands_in"],

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.panels.formulas import TRUE_VALUE, Clause, Need, follows
+from kb_build.panels.idle import any_of
 from kb_build.schema import TEST_OFF, TEST_ON
 from kb_build.symbols.flags import fillers
-from kb_build.symbols.records import READ_ONLY, PanelCondition
+from kb_build.symbols.records import READ_ONLY, SettingCondition
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -33,7 +34,7 @@ _PANELS_IN_C = frozenset({"Modifier", "StripModifier", "ShaderFx", "Node", "Node
 _OPPOSITE = {">": "<=", ">=": "<", "<": ">=", "<=": ">", "==": "!=", "!=": "=="}
 
 
-def panel_conditions(found: Mapping[str, Gating], symbols: Symbols) -> Iterator[PanelCondition]:
+def panel_conditions(found: Mapping[str, Gating], symbols: Symbols) -> Iterator[SettingCondition]:
     """The conditions that are worth telling, by property."""
     for path, gating in found.items():
         symbol = symbols.symbol(path)
@@ -56,7 +57,9 @@ def panel_conditions(found: Mapping[str, Gating], symbols: Symbols) -> Iterator[
         told.sort(key=lambda row: (not all(_owner(need) in own for need in row[0]), *_rank(row)))
         for number, (clause, hides) in enumerate(told[:_MOST_CLAUSES]):
             for need in sorted(clause, key=lambda one: (_owner(one) not in own, one.gate)):
-                yield PanelCondition(path, number, need.gate, _test(need, symbols), hides)
+                yield SettingCondition(
+                    path, number, need.gate, _test(need, symbols), "hidden" if hides else "greyed"
+                )
 
 
 def _is_of(need: Need, own: set[str], symbols: Symbols) -> bool:
@@ -128,10 +131,9 @@ def _test(need: Need, symbols: Symbols) -> str:
         return TEST_ON if need.is_in else TEST_OFF
     items = _items(need, symbols)
     values = sorted(map(repr, need.values & items if items else need.values))
-    listed = " or ".join(filter(None, (", ".join(values[:-1]), values[-1])))
     if need.is_in:
-        return listed
-    return f"not {listed}" if len(values) == 1 else f"none of {', '.join(values)}"
+        return any_of(values)
+    return f"not {values[0]}" if len(values) == 1 else f"none of {', '.join(values)}"
 
 
 def _not(test: str) -> str:

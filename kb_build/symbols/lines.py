@@ -56,7 +56,7 @@ from kb_build.symbols.records import (
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from kb_build.symbols.records import NewValue, PanelCondition, Refusal, Symbol
+    from kb_build.symbols.records import NewValue, Refusal, SettingCondition, Symbol
     from kb_build.symbols.taken import Taken
 
 _ACTIVE = "bpy.context.object"
@@ -405,11 +405,11 @@ def subscripts_text(socket: Symbol, most: int | None = None) -> str:
     return ", ".join(shown)
 
 
-def switches(conditions: Iterable[PanelCondition]) -> Iterator[list[str]]:
-    """Of one property's conditions, by clause, the settings of which one must be on, lest it is greyed out."""
+def switches(conditions: Iterable[SettingCondition]) -> Iterator[list[str]]:
+    """Of one property's conditions, by clause, the settings of which one must be on to set it, or for an effect."""
     for _, rows in groupby(conditions, key=attrgetter("clause")):
         clause = [*rows]
-        if all(row.test == TEST_ON and not row.hides for row in clause):
+        if all(row.test == TEST_ON and row.otherwise != "hidden" for row in clause):
             yield [row.gate for row in clause]
 
 

@@ -18,6 +18,8 @@ from kb_build.symbols.taken import NEVER, Taken
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
+    from kb_build.schema import Otherwise
+
 Scalar = str | int | float | bool | None
 Default = Scalar | list[Any]
 
@@ -449,19 +451,18 @@ class Page:
         return hashlib.sha256(" ".join(self.text.split()).encode(errors="replace")).hexdigest()
 
 
-class PanelCondition(NamedTuple):
-    """What Blender's panels ask of a setting (``gate``) before they let ``path`` be set, as text: ``on``, ``'SUN'``; of
-    an operator, before they let it be run.
+class SettingCondition(NamedTuple):
+    """What a setting (``gate``) must be, as text: ``on``, ``'SUN'``, before Blender's panels let ``path`` be set, or an
+    operator be run; or before it has an effect.
 
-    Of those with one ``clause`` any is enough; all clauses must hold. ``hides``: they do not show it otherwise,
-    instead of greying it out.
+    Of those with one ``clause`` any is enough; all clauses must hold.
     """
 
     path: str
     clause: int
     gate: str
     test: str
-    hides: bool
+    otherwise: Otherwise
 
 
 @dataclass(frozen=True, slots=True)

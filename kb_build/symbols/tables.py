@@ -21,7 +21,7 @@ from kb_build.usage.examples import SymbolUsage
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 
-    from kb_build.symbols.records import Page, PanelCondition, Symbol
+    from kb_build.symbols.records import Page, SettingCondition, Symbol
     from kb_build.usage.examples import Uses
 
     Row = tuple[object, ...]
@@ -31,7 +31,7 @@ _TWO_ACTIONS = re.compile(r"(?P<first>\w+ing) (?:&|and) (?P<second>\w+ing)(?: (?
 
 @dataclass(frozen=True, slots=True)
 class SymbolTables:
-    """Rows of the tables symbols, names, enum_items, operator_arguments, creation and panel_conditions, as schema.DDL
+    """Rows of the tables symbols, names, enum_items, operator_arguments, creation and setting_conditions, as schema.DDL
     has them, and where scripts use symbols.
     """
 
@@ -40,7 +40,7 @@ class SymbolTables:
     enum_items: Sequence[Row]
     operator_arguments: Sequence[Row]
     creation: Sequence[Row]
-    conditions: Sequence[PanelCondition] = ()
+    conditions: Sequence[SettingCondition] = ()
     uses: Mapping[str, Uses] = field(default_factory=dict[str, "Uses"])
 
 
@@ -157,7 +157,7 @@ def _with_way(symbol: Symbol, reached: Mapping[str, str], ways: EmptyWays) -> Sy
     return replace(symbol, reached=path, lacks=ways.last_empty(symbol.name)) if path else symbol
 
 
-def _switches(conditions: Iterable[PanelCondition]) -> dict[str, str]:
+def _switches(conditions: Iterable[SettingCondition]) -> dict[str, str]:
     """Property → the settings of its own class of which panels want one on, else grey it out: ``use_a or use_b``."""
     found: dict[str, str] = {}
     for path, rows in groupby(conditions, key=attrgetter("path")):

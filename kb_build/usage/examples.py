@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from kb_build.flow.analysis import Analysis
     from kb_build.flow.api import Api
-    from kb_build.symbols.records import PanelCondition
+    from kb_build.symbols.records import SettingCondition
 
 MOST_EXAMPLES = 3  # of one symbol
 _MOST_LINES = 3
@@ -110,7 +110,7 @@ class SymbolUsage:
     uses: Mapping[str, Uses] = field(default_factory=dict[str, Uses])
     reached: Mapping[str, str] = field(default_factory=dict[str, str])
     names: Mapping[str, str] = field(default_factory=dict[str, str])
-    conditions: Sequence[PanelCondition] = ()
+    conditions: Sequence[SettingCondition] = ()
 
 
 def clearest(examples: Iterable[Example]) -> list[Example]:

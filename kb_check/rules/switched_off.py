@@ -1,11 +1,16 @@
-"""A setting that Blender greys out as long as another is off, on something that the script has just made.
+"""A setting that Blender greys out as long as another is off, or that has no effect without it, on something that the
+script has just made.
 
 ```python
 camera = bpy.data.cameras.new("Camera")
 camera.dof.focus_distance = 3  # reported: camera.dof.use_dof is off on a new camera, and stays off
+rows = obj.modifiers.new("Rows", "ARRAY")
+rows.constant_offset_displace.x = 2  # reported: rows.use_constant_offset is off
+thin = obj.modifiers.new("Thin", "DECIMATE")
+thin.angle_limit = 0.1  # reported: only with thin.decimate_type = 'DISSOLVE'
 ```
 
-Blender's own panels tell which settings have such a switch.
+Blender's own panels tell which settings have such a switch. Of modifiers it was tried on meshes.
 
 Not reported: things that the script did not make itself, which may have the switch on; scripts that name the switch
 anywhere, or set settings by names that they compute; and values that a new thing has anyway.
@@ -18,11 +23,13 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.flags import usual_default
 from kb_build.symbols.lines import switches
+from kb_build.symbols.paths import last_name
 from kb_build.symbols.records import COMPARED
 from kb_check.findings import Finding
 from kb_check.rule import Rule
 from kb_check.running.out_of_sight import computes_names
 from kb_check.scene.made_here import is_new
+from kb_check.script import once_per_script
 from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
@@ -33,30 +40,61 @@ if TYPE_CHECKING:
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for row in script.resolutions("store"):
+    parts = _set_in_part(script)
+    for row in script.resolutions("store", "attribute"):
         node = row.node
+        if row.kind == "attribute" and node not in parts:
+            continue
         certain = row.sure and not row.guarded and not row.missing and len(row.symbols) == 1
         if not certain or not isinstance(node, ast.Attribute):
             continue
-        gate = _switch(script, row.symbols[0])
+        path = row.symbols[0]
+        message, gates = _switched_off(script, path)
         if (
-            gate is None
-            or gate.name in named_words(script)
-            or _has_default(script, row.statement, row.symbols[0])
+            not gates
+            or any(last_name(gate) in named_words(script) for gate in gates)
+            or _has_default(script, row.statement, path)
         ):
             continue
         if not computes_names(script) and is_new(script, node.value):
-            yield Finding(
-                RULE.id, "note", script.name_span(node),
-                f"Blender's panels grey `{row.symbols[0]}` out unless `{gate.name}` is on. A new one has it off, and "
-                "this script does not turn it on.", gate.path, (gate.path,),
-            )  # fmt: skip
+            yield Finding(RULE.id, "note", script.name_span(node), message, gates[0], gates)
+
+
+@once_per_script
+def _set_in_part(script: Script) -> frozenset[ast.AST]:
+    """The arrays of which the script sets one value: ``offset`` of ``rows.offset[0] = 2`` and ``rows.offset.x = 2``."""
+    targets = (target for node in script.all(ast.Assign) for target in node.targets)
+    owners = (target.value for target in targets if isinstance(target, (ast.Subscript, ast.Attribute)))
+    return frozenset(node for node in owners if _is_array(script, node))
+
+
+def _is_array(script: Script, node: ast.expr) -> bool:
+    row = script.analysis.resolutions.get(node)
+    symbol = script.api.symbols.symbol(row.symbols[0]) if row and len(row.symbols) == 1 else None
+    return symbol is not None and bool(symbol.array)
+
+
+def _switched_off(script: Script, path: str) -> tuple[str, tuple[str, ...]]:
+    """(what to say of a setting, the settings of which one must be changed) where it is of no use on a new thing."""
+    if gate := _switch(script, path):
+        message = (
+            f"Blender's panels grey `{path}` out unless `{gate.name}` is on. A new one has it off, and this script "
+            "does not turn it on."
+        )
+        return message, (gate.path,)
+    idle = [row for row in script.names.reader.conditions_of(path) if row.otherwise == "idle"]
+    needs = " or ".join(f"`{last_name(row.gate)}` is {row.test}" for row in idle)
+    message = (
+        f"`{path}` has no effect unless {needs}. A new one has it otherwise, and this script does not set it."
+    )
+    return message, tuple(row.gate for row in idle)
 
 
 def _switch(script: Script, path: str) -> Symbol | None:
     """The truth value of the same thing, off on every new one, that must be on before panels let a property be set."""
     reader = script.names.reader
-    for switch, *others in switches(reader.panel_tests(path)):
+    conditions = [row for row in reader.conditions_of(path) if row.otherwise == "greyed"]
+    for switch, *others in switches(conditions):
         gate = None if others else script.api.symbols.symbol(switch)
         if gate is None or not reader.descends(path.rpartition(".")[0], gate.owner):
             continue

@@ -13,11 +13,11 @@ from kb_serve.answer.arguments import argument_lines, arguments, operator_call
 from kb_serve.answer.asked_values import ASKED_NOTHING
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.calls_in_areas import calls_in_areas
+from kb_serve.answer.condition_lines import condition_lines
 from kb_serve.answer.enum_items import item_lines
 from kb_serve.answer.outcomes import outcomes
 from kb_serve.answer.own_classes import asked_of_classes, definition
 from kb_serve.answer.pages import passage_block
-from kb_serve.answer.panel_lines import panel_lines
 from kb_serve.answer.place_lines import place_lines, reached_as
 from kb_serve.answer.property_facts import facts
 from kb_serve.answer.shown_uses import use_text
@@ -175,7 +175,7 @@ class MarkdownRenderer:
         )
         for instead in symbol.flagged(BARE_DATA):
             lines.append(_BARE_DATA + (f" Use `{instead}`." if instead else ""))
-        told = [*panel_lines(symbol, self.reader)] or [*switch_lines(symbol, self.reader)]
+        told = [*condition_lines(symbol, self.reader)] or [*switch_lines(symbol, self.reader)]
         if line := "; ".join(told):
             lines.append(line[0].upper() + line[1:] + ".")
         if symbol.deprecation:

@@ -37,7 +37,7 @@ from . import (
     windowless,
 )
 from .apart import Beside, can_work_apart
-from .instances import context_modes, evaluated, limits, new_things, own_names, pointer_fillers, startup
+from .instances import context_modes, evaluated, idle, limits, new_things, own_names, pointer_fillers, startup
 from .instances.neighbours import Neighbours
 from .instances.observer import Observer
 from .wire import Writer
@@ -114,12 +114,13 @@ def start_beside(_write, found):
         found["refusals"] = Beside("refusals", tried)
         found["crashes"] = Beside("crashes", lambda write: crashes.find_all(write, observer))
         found["addons"] = Beside("addons", addon_names.write_all)
+        found["idle"] = Beside("idle", idle.find_all)
         found["needs"] = Beside("needs", lambda write: operator_needs.find_alone(write, skipped))
 
 
 def write_begun(write, found):
     """What was begun there."""
-    for step in ("refusals", "crashes", "addons"):
+    for step in ("refusals", "crashes", "addons", "idle"):
         if step in found:
             found[step].into(write)
 

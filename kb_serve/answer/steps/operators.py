@@ -11,7 +11,7 @@ from kb_build.symbols.flags import operator_active, operator_areas, refused_noth
 from kb_build.symbols.lines import held, literal, operator_needs
 from kb_serve.answer.arguments import of_file_browser
 from kb_serve.answer.calls_in_areas import calls_in_areas
-from kb_serve.answer.panel_lines import panel_lines, switches_off
+from kb_serve.answer.condition_lines import condition_lines, switches_off
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -237,7 +237,7 @@ def _asked(operator: Symbol, reader: BaseReader) -> Iterator[str]:
         yield "not seen to run without a window"
     for path, area in calls_in_areas(operator, reader):
         yield f"calls `{path}`, which takes {area}"
-    yield from panel_lines(operator, reader)
+    yield from condition_lines(operator, reader)
 
 
 def _runs(path: str) -> bool:

@@ -44,7 +44,7 @@ def asked(symbols: BaseSymbols, *scripts: str, of: str = DISTANCE) -> list[str]:
             owner, _, name = row.gate.removeprefix(T).rpartition(".")
             gate = name if owner == of.partition(".")[0] else f"{owner}.{name}"
             clauses.setdefault(row.clause, []).append(f"{gate} {row.test}")
-            hides[row.clause] = row.hides
+            hides[row.clause] = row.otherwise == "hidden"
     return sorted(
         f"{'hidden' if hides[number] else 'greyed'} unless {' or '.join(tests)}"
         for number, tests in clauses.items()
@@ -408,7 +408,7 @@ def offered(symbols: BaseSymbols, *bodies: str, operator: str = "fluid.bake_all"
     parts = [gatings_in(places_in(analyse(code, api, (5, 1, 0)), symbols), symbols) for code in codes]
     rows = panel_conditions(settled(merged(parts), symbols), symbols)
     return sorted(
-        f"{'hidden' if row.hides else 'greyed'} unless {row.gate.removeprefix(T)} {row.test}"
+        f"{row.otherwise} unless {row.gate.removeprefix(T)} {row.test}"
         for row in rows
         if row.path == f"bpy.ops.{operator}"
     )

@@ -148,6 +148,51 @@ def test_settings_whose_switch_is_off_are_found(rule_checker: Checker, tmp_path:
         assert f"unless `{switch.rpartition('.')[2]}` is on" in finding.message
 
 
+CUBE = """\
+import bpy
+bpy.ops.mesh.primitive_cube_add()
+cube = bpy.context.object
+other = bpy.data.objects.new("other", cube.data.copy())
+other.location = 0.3, 0.4, 0.9
+some = bpy.data.collections.new("some")
+some.objects.link(other)
+bpy.context.scene.collection.children.link(some)
+""".splitlines()
+SHAPE = "[tuple(v.co) for v in cube.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.vertices]"
+# A modifier, a setting that has no effect on a new one, what gives it one, and another value.
+IDLE_SETTINGS = [
+    ("ARRAY", "constant_offset_displace = (0, 0, 3)", "use_constant_offset = True",
+     "constant_offset_displace = (0, 0, 5)"),
+    ("ARRAY", "constant_offset_displace.z = 3", "use_constant_offset = True", "constant_offset_displace.z = 5"),
+    ("ARRAY", "constant_offset_displace[2] = 3", "use_constant_offset = True", "constant_offset_displace[2] = 5"),
+    ("ARRAY", "fit_length = 8", "fit_type = 'FIT_LENGTH'", "fit_length = 12"),
+    ("DECIMATE", "angle_limit = 0.5", "decimate_type = 'DISSOLVE'", "angle_limit = 2"),
+    ("REMESH", "octree_depth = 2", "mode = 'BLOCKS'", "octree_depth = 4"),
+    ("CAST", "size = 3", "use_radius_as_size = False", "size = 5"),
+    ("BOOLEAN", "collection = bpy.data.collections['some']", "operand_type = 'COLLECTION'", "collection = None"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("kind", "setting", "switch", "again"), IDLE_SETTINGS)
+def test_settings_of_modifiers_without_an_effect_are_found(
+    rule_checker: Checker, tmp_path: Path, kind: str, setting: str, switch: str, again: str
+) -> None:
+    made = [*CUBE, f"modifier = cube.modifiers.new('new', '{kind}')"]
+    lines = [*made, f"modifier.{setting}", f"modifier.{switch}", f"modifier.{again}"]
+    idle, _, working = run_statements(tmp_path, lines, dict.fromkeys(range(len(made), len(lines)), SHAPE))[
+        len(made) :
+    ]
+    assert (idle[0], working[0]) == ("", "")
+    assert idle[1] == idle[2]
+    assert working[1] != working[2]
+    [finding] = rule_checker.check("\n".join(lines[: len(made) + 1]), rules=["switched-off"])
+    assert finding.span.line == len(made) + 1
+    name, _, value = switch.partition(" = ")
+    assert f"has no effect unless `{name}` is" in finding.message
+    assert value in finding.message.replace(" on.", " True.").replace(" off.", " False.")
+    assert rule_checker.check("\n".join(lines), rules=["switched-off"]) == []
+
+
 @pytest.mark.parametrize(
     "code",
     [

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.answer.panel_lines import panel_lines
+from kb_serve.answer.condition_lines import condition_lines
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
@@ -21,7 +21,7 @@ SWITCHES = "while it is off, Blender's panels grey out or hide "
 def lines(reader: BaseReader, path: str) -> list[str]:
     symbol = reader.symbol(f"bpy.types.{path}")
     assert symbol is not None
-    return list(panel_lines(symbol, reader))
+    return list(condition_lines(symbol, reader))
 
 
 @pytest.mark.parametrize(
@@ -49,6 +49,13 @@ def lines(reader: BaseReader, path: str) -> list[str]:
           "`focus_distance`, `focus_object`, `focus_subtarget`"]),
         ("Material.max_vertex_displacement",
          ["greyed out in Blender's panels when `displacement_method` is 'BUMP' (a new one has `'BUMP'`)"]),
+        ("ArrayModifier.constant_offset_displace",
+         ["has no effect unless `use_constant_offset` is on (a new one has it off)"]),
+        ("RemeshModifier.octree_depth",
+         ["has no effect unless `mode` is 'BLOCKS', 'SHARP' or 'SMOOTH' (a new one has `'VOXEL'`)"]),
+        ("CastModifier.size", ["has no effect unless `use_radius_as_size` is off (a new one has it on)"]),
+        ("SolidifyModifier.thickness_vertex_group", ["has no effect unless `vertex_group` is not empty"]),
+        ("ArrayModifier.use_constant_offset", ["while it is off, there is no effect of `constant_offset_displace`"]),
         # Drawn in C, or by a template; without conditions; no setting.
         ("BevelModifier.width", []), ("ImageFormatSettings.color_depth", []), ("RenderSettings.fps", []),
         ("Object.users_collection", []),
@@ -77,7 +84,7 @@ def test_an_operator_says_when_panels_offer_it(
 ) -> None:
     symbol = reader.symbol(f"bpy.ops.{operator}")
     assert symbol is not None
-    assert list(panel_lines(symbol, reader)) == expected
+    assert list(condition_lines(symbol, reader)) == expected
 
 
 def test_a_switch_for_several_kinds_names_each_setting_once(reader: BaseReader) -> None:
@@ -93,7 +100,7 @@ def test_a_long_list_is_cut(reader: BaseReader) -> None:
 
 
 def test_every_condition_names_symbols_of_the_base(reader: BaseReader) -> None:
-    rows = reader.rows("SELECT path, gate FROM panel_conditions")
+    rows = reader.rows("SELECT path, gate FROM setting_conditions")
     assert len(rows) > 1_500
     for path in {path for row in rows for path in row}:
         entry = reader.entry(path)
