@@ -52,7 +52,7 @@ class CollectionFacts(_Frozen):
 class ModifierFacts(_Frozen):
     """A modifier. ``on``: it is switched on for renders. ``target``: the object that it works with.
 
-    ``pinned``: it is a cloth with pins.
+    ``pinned``: it is a cloth with pins. ``copies``: the objects that a particle system shows its particles as.
     """
 
     name: str
@@ -60,6 +60,7 @@ class ModifierFacts(_Frozen):
     on: bool = True
     target: str | None = None
     pinned: bool = False
+    copies: tuple[str, ...] = ()
 
 
 class ConstraintFacts(_Frozen):

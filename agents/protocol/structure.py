@@ -52,8 +52,11 @@ class LogicalObject:
         """Names of its meshes with a surface that renders show; of all with a surface if renders show none.
 
         The box of a fluid's domain is none: a fluid that is not there yet, or has no surface, is where its flows are.
+        Nor is what its own particles are copies of, where it has another mesh.
         """
-        bodies = [mesh for mesh in self.meshes if mesh.surface and not mesh.is_only_a_box]
+        copied = {name for mesh in self.meshes for modifier in mesh.modifiers for name in modifier.copies}
+        all_bodies = [mesh for mesh in self.meshes if mesh.surface and not mesh.is_only_a_box]
+        bodies = [mesh for mesh in all_bodies if mesh.name not in copied] or all_bodies
         rendered = tuple(mesh.name for mesh in bodies if mesh.rendered)
         return rendered or tuple(mesh.name for mesh in bodies)
 

@@ -182,11 +182,22 @@ def _modifier(modifier):
     facts = {"name": modifier.name, "type": modifier.type, "on": bool(modifier.show_render)}
     if modifier.type == "FLUID":
         facts["type"] = f"FLUID_{modifier.fluid_type}"
+    if modifier.type == "PARTICLE_SYSTEM":
+        facts["copies"] = _copied(modifier.particle_system.settings)
     if modifier.type == "CLOTH":
         facts["pinned"] = bool(modifier.settings.vertex_group_mass)
     if target is not None:
         facts["target"] = target.name
     return facts
+
+
+def _copied(settings):
+    """Names of the objects that particles are shown as."""
+    if settings.render_type == "OBJECT" and settings.instance_object is not None:
+        return [settings.instance_object.name]
+    if settings.render_type == "COLLECTION" and settings.instance_collection is not None:
+        return [obj.name for obj in settings.instance_collection.all_objects]
+    return []
 
 
 def _constraint(constraint):

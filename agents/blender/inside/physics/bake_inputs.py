@@ -26,6 +26,12 @@ _LOOKS = (
     "instance_",
     "material",
     "color_ramp",
+    "trail_",  # of which opening a file changes one
+    "use_scale_instance",
+    "use_rotation_instance",
+    "use_global_instance",
+    "use_whole_collection",
+    "use_collection_",
 )
 _SETTINGS = {
     "CLOTH": ("settings", "collision_settings"),

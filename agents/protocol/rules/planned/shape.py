@@ -64,6 +64,8 @@ def _wrong_dimensions(context: RuleContext, measures: Measures) -> Iterator[Find
             continue
         for axis, size, wanted in zip(_AXES, sizes, planned.dimensions, strict=True):
             most = max(tolerances.dimension_share * wanted, tolerances.contact)
+            if not size and wanted <= tolerances.sheet:
+                continue
             if abs(size - wanted) > most:
                 yield R2.finding(
                     (name,),
@@ -121,7 +123,9 @@ def _misplaced(context: RuleContext, measures: Measures) -> Iterator[Finding]:
                 unit="m",
                 at=as_vector(place),
             )
-        if (off := rotation_between(axes, axes_of_euler(planned.rotation))) > tolerances.turn:
+        # A force field blows along its own axis, of which the plan says nothing.
+        off = 0.0 if planned.role == "force" else rotation_between(axes, axes_of_euler(planned.rotation))
+        if off > tolerances.turn:
             euler = ", ".join(f"{value:g}" for value in planned.rotation)
             yield R3.finding(
                 (name, root),
@@ -291,7 +295,7 @@ R2 = Rule(
     _wrong_dimensions,
     _extents_requests,
     needs_plan=True,
-    tolerances=("dimension_share", "contact"),
+    tolerances=("dimension_share", "contact", "sheet"),
 )
 R3 = Rule(
     "R3",

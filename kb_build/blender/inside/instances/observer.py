@@ -420,7 +420,7 @@ class Observer:
         if len(rows) > MOST_VALUES:
             return []
         others = [
-            (value, labels, any(same(value, new) for new, _ in rows))
+            (value, labels, any(same(value, new) for new, _ in rows[:1]))
             for value, labels in self.start_values.get(path, ())
         ]
         # Of several in one thing, those that have what a new one has are the ones that people mean.
