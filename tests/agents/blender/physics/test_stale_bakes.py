@@ -97,6 +97,15 @@ def test_all_tools_tell_of_it_and_a_saved_file_remembers_it(session: LiveSession
     assert stale(session) == []
 
 
+@pytest.mark.parametrize("scene", ["soft()", "cloth()", "emitter()"])
+def test_a_file_that_is_opened_again_has_what_it_was_baked_from(session: LiveSession, scene: str) -> None:
+    session.run(f"{PARTS}\n{scene}")
+    assert not session.use(BAKE).failed
+    session.use(SAVE, name="again", verify=False)
+    session.use(LOAD, path="again")
+    assert stale(session) == []
+
+
 def test_looks_and_what_takes_no_part_leave_a_bake_as_it_is(session: LiveSession) -> None:
     session.run(f"{JELLY_ON_BALL}\nplane('Other', 9)\nemitter()")
     session.use(BAKE)

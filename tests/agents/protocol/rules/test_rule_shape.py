@@ -64,9 +64,35 @@ def test_an_extent_may_be_a_tenth_off(session: LiveSession, axis: int) -> None:
 
 def test_a_sheet_may_have_no_thickness(session: LiveSession) -> None:
     build(session, 'thing("Table", plane("Cloth", (-0.6, -0.4), (0.6, 0.4)))')
-    assert verified(session, "R2", plan((1.2, 0.8, 0.002))).passed == ("R2",)
-    found = the_finding(verified(session, "R2", plan((1.2, 0.8, 0.003))))
+    assert verified(session, "R2", plan((1.2, 0.8, 0.02))).passed == ("R2",)
+    found = the_finding(verified(session, "R2", plan((1.2, 0.8, 0.03))))
     assert found.measured == pytest.approx(0, abs=1e-6)
+    session.run('bpy.data.objects["Cloth"].data.vertices[0].co.z = 0.001')
+    assert verified(session, "R2", plan((1.2, 0.8, 0.02))).findings
+
+
+def test_what_particles_are_copies_of_is_no_part_of_their_system(session: LiveSession) -> None:
+    shower = """
+tap = plane("Tap", (-0.6, -0.4), (0.6, 0.4))
+leaf = box("Leaf", (4, 4, -2), (5, 5, -1))
+thing("Table", tap, leaf)
+made = tap.modifiers.new("Shower", "PARTICLE_SYSTEM").particle_system.settings
+"""
+    build(session, shower)
+    assert verified(session, "R2", plan((1.2, 0.8, 0.02))).findings
+    session.run(
+        'made = bpy.data.particles[0]\nmade.render_type = "OBJECT"\n'
+        'made.instance_object = bpy.data.objects["Leaf"]'
+    )
+    assert verified(session, "R2", plan((1.2, 0.8, 0.02))).passed == ("R2",)
+    session.run(
+        'leaf = bpy.data.objects["Leaf"]\nleaves = bpy.data.collections.new("Leaves")\n'
+        "leaves.objects.link(leaf)\nmade = bpy.data.particles[0]\n"
+        'made.render_type, made.instance_collection = "COLLECTION", leaves'
+    )
+    assert verified(session, "R2", plan((1.2, 0.8, 0.02))).passed == ("R2",)
+    session.run('bpy.data.objects["Tap"].modifiers.clear()')
+    assert verified(session, "R2", plan((1.2, 0.8, 0.02))).findings
 
 
 @pytest.mark.parametrize(
@@ -179,8 +205,11 @@ def test_a_planned_field_has_a_place_but_no_size(session: LiveSession) -> None:
         session,
         'wind = bpy.data.objects.new("Table", None)\nscene.collection.objects.link(wind)\nwind.location = (1, 2, 3)',
     )
-    report = verified(session, "R2,R3", plan(position=(1, 2, 0), rotation=(0, 0, 0), role="force"))
+    planned = {"rotation": (0, 0, 0), "role": "force"}
+    report = verified(session, "R2,R3", plan(position=(1, 2, 0), **planned))
     assert the_finding(report).measured == pytest.approx(3, abs=1e-6)
+    session.run('bpy.data.objects["Table"].rotation_euler = (0, 1.57, 0)')  # a wind blows along its own Z
+    assert verified(session, "R2,R3", plan(position=(1, 2, 3), **planned)).passed == ("R2", "R3")
 
 
 def test_what_is_not_there_is_never_in_its_place(session: LiveSession) -> None:
