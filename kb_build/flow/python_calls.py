@@ -30,6 +30,7 @@ from kb_build.flow.types import (
     Type,
     join,
     literal_text,
+    members,
     union,
 )
 from kb_build.symbols.api_names import TYPES
@@ -37,6 +38,7 @@ from kb_build.symbols.api_names import TYPES
 if TYPE_CHECKING:
     from collections.abc import Sequence as Rows
 
+    from kb_build.flow.members import Lookup
     from kb_build.flow.read_calls import ReadCall
 
 _ITERATORS = {
@@ -109,11 +111,7 @@ class PythonCalls(ScriptCalls):
             case "type":
                 return self._class_of(first)
             case "setattr" if len(arguments) == 3:
-                declared = self.is_declared(call.node.args[2])
-                name = literal_text(arguments[1])
-                self.register(first, name or ANY, arguments[2], declared=declared)
-                if name and isinstance(first, (LocalInstance, LocalClass)):
-                    self.classes[first.number].bind(name, arguments[2])
+                self._set_by_name(call)
                 return NONE
             case "hasattr":
                 text = literal_text(arguments[1]) if len(arguments) == 2 else None
@@ -126,6 +124,18 @@ class PythonCalls(ScriptCalls):
                 return Mapping(UNKNOWN, UNKNOWN)
             case _:
                 return UNKNOWN
+
+    def _set_by_name(self, call: ReadCall) -> None:
+        """``setattr(x, "name", value)``."""
+        owner, named, value = call.arguments
+        name = literal_text(named)
+        if name and self._is_surely_named(call):
+            found = self.attribute(owner, name)
+            self._resolve_named(call, name, found)
+            self.check_value(found.type, call.node.args[2])
+        self.register(owner, name or ANY, value, declared=self.is_declared(call.node.args[2]))
+        if name and isinstance(owner, (LocalInstance, LocalClass)):
+            self.classes[owner.number].bind(name, value)
 
     def _lacks(self, kind: Type, name: str) -> bool:
         """Whether a value surely lacks an attribute that another Blender gives it: of ``bpy.data``, to which scripts
@@ -164,15 +174,28 @@ class PythonCalls(ScriptCalls):
         return found[0] if len(found) == 1 else UNKNOWN
 
     def _named_attribute(self, call: ReadCall) -> Type:
-        """``getattr(x, "name")``: read like an attribute, but a script that asks so is ready for its absence."""
+        """``getattr(x, "name")``: read like an attribute; a script that gives a default is ready for its absence."""
         text = literal_text(call.argument(1))
         if not text or call.argument(0) is UNKNOWN:
             return UNKNOWN
         found = self.attribute(call.argument(0), text)
-        if found.symbols:
+        if len(call.arguments) == 2 and self._is_surely_named(call):
+            self._resolve_named(call, text, found)
+        elif found.symbols:
             self.resolve(call.node.args[1], "text", text, found.symbols, sure=found.sure)
         kind = found.type
         return join(kind, call.argument(2)) if len(call.arguments) > 2 else kind
+
+    def _is_surely_named(self, call: ReadCall) -> bool:
+        """Whether a call surely asks things of the API for the attribute that its second argument names."""
+        node = call.node.args[1]
+        is_sure = isinstance(node, ast.Constant) or self.carried_text(node) is not None
+        return is_sure and all(isinstance(kind, Instance) for kind in members(call.argument(0)))
+
+    def _resolve_named(self, call: ReadCall, name: str, found: Lookup) -> None:
+        self.resolve(
+            call.node.args[1], "text", name, found.symbols, found.missing, found.possible, sure=found.sure
+        )
 
     def _method(self, receiver: Type, name: str, arguments: Rows[Type]) -> Type:  # noqa: PLR0911, PLR0912 - one case a method
         first = arguments[0] if arguments else UNKNOWN

@@ -54,4 +54,4 @@ def _comes_from_elsewhere(row: Resolution) -> bool:
         return False
     if row.kind == "item":
         return isinstance(row.node, ast.Subscript) and not isinstance(row.node.slice, ast.Constant)
-    return row.kind in {"value", "class"} and not isinstance(row.node, ast.Constant)
+    return row.kind in {"value", "class", "text"} and not isinstance(row.node, ast.Constant)

@@ -2,7 +2,8 @@
 
 Reported where the type of what stands before the dot is known, and no class that it can be has the name: neither
 Blender's own, nor what the files of the same folder register (``bpy.types.Scene.my_settings = …``). Names in
-``keyframe_insert("…")``, ``layout.prop(…, "…")`` and the like count too.
+``keyframe_insert("…")``, ``layout.prop(…, "…")``, ``setattr(…, "…", …)`` and the like count too, and those that come to
+them by a loop over what is written out.
 
 ```python
 bpy.context.object.draw_type = "WIRE"  # reported: display_type since 2.80
