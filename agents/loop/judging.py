@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING
 
 from agents.loop.edit.baseline import format_new, told_since
 from agents.loop.edit.declared_mechanisms import undeclared
@@ -13,13 +13,14 @@ from agents.loop.evidence import evidence, moves
 from agents.loop.run import VERIFIER, VERIFY
 from agents.loop.withdrawals import as_soft
 from agents.plan.tactical import Review
+from agents.protocol.findings import Finding
 from simworlds.llm.errors import Declined, Misfit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from agents.loop.run import Run
-    from agents.loop.task import Finding, RunTask
+    from agents.loop.task import RunTask
     from agents.plan.part import Stage
     from agents.plan.tactical import TacticalPlan, Withdrawal
     from agents.roles.reviewer import Reviewer
@@ -42,7 +43,7 @@ class VerifierVerdict:
     @property
     def hard(self) -> int:
         """How many findings keep the stage open."""
-        return sum(finding["severity"] == "hard" for finding in self.findings)
+        return sum(finding.severity == "hard" for finding in self.findings)
 
 
 def verify(run: Run, stage: Stage, task: RunTask) -> VerifierVerdict:
@@ -68,15 +69,8 @@ def without(verdict: VerifierVerdict, withdrawn: Sequence[Withdrawal]) -> Verifi
 
 def _undecided(why: str, task: RunTask) -> VerifierVerdict:
     """A scene that cannot be judged blocks the stage, unless the file could not be judged before the edit either."""
-    before = any(finding["rule"] == VERIFIER for finding in task.known)
-    finding: Finding = {
-        "rule": VERIFIER,
-        "severity": "soft" if before else "hard",
-        "objects": (),
-        "message": why,
-        "fix": "",
-        "outcome": "error",
-    }
+    before = any(finding.rule == VERIFIER for finding in task.known)
+    finding = Finding(VERIFIER, "soft" if before else "hard", (), why, outcome="error")
     text = "The verifier could not judge the scene" + (", as it could not before the edit" if before else "")
     return VerifierVerdict(f"{text}: {why}", (finding,))
 
@@ -122,7 +116,7 @@ def note_verdict(run: Run, stage: Stage, attempt: int, verdict: VerifierVerdict)
             ok=verdict.ok,
             hard=verdict.hard,
             soft=len(verdict.findings) - verdict.hard,
-            findings=cast("tuple[Any, ...]", verdict.findings),
+            findings=verdict.findings,
         )
     )
 

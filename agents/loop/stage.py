@@ -162,7 +162,7 @@ class StageLoop:
             report=worked.said,
             verified=verdict.text,
             reviewed=reviewed,
-            hard=[one for one in verdict.findings if one["severity"] == "hard"],
+            hard=[finding for finding in verdict.findings if finding.severity == "hard"],
             left=f"{tries} {self._run.time_left(self._stage, attempt + 1)}".rstrip(),
         )
         if decision.transition == "withdraw":

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from agents.protocol.rules_by_stage import rules_of
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from agents.plan.edit import EditedActor
     from agents.plan.part import Stage
     from agents.plan.scene import ScenePlan
+    from agents.protocol.findings import Finding
     from simworlds.llm.messages import Picture
-
-Finding = Mapping[str, Any]
-"""A finding of the verifier, as ``agents.protocol.report.json_report.as_json`` gives it."""
-
 
 _MOST_NAMES, _MOST_OLD = 200, 5_000  # of a readout's arguments
 _READOUT_TOKENS = 2_000  # of a readout that is given with every request of an edit

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from agents.loop.task import Finding
     from agents.plan.tactical import Withdrawal
+    from agents.protocol.findings import Finding
 
 _TAKEN_BACK = "The planner took back what the plan says where these rules find it broken: {}."
 _NOT_TO_BE_MENDED = "It is measured all the same, and not to be mended."
@@ -21,11 +22,11 @@ def as_soft(findings: Iterable[Finding], withdrawn: Sequence[Withdrawal]) -> tup
     for finding in findings:
         is_gone = any(one.covers(finding) for one in withdrawn)
         gone += [finding] if is_gone else []
-        read.append({**finding, "severity": "soft"} if is_gone else finding)
+        read.append(replace(finding, severity="soft") if is_gone else finding)
     if not gone:
         return read, ""
-    told = "; ".join(f"{one['rule']} {', '.join(one['objects'])}" for one in gone)
-    hard = sum(one["severity"] == "hard" for one in read)
+    told = "; ".join(f"{finding.rule} {', '.join(finding.objects)}" for finding in gone)
+    hard = sum(finding.severity == "hard" for finding in read)
     left = f"{hard} hard beside {'it' if len(gone) == 1 else 'them'}" if hard else "no other is hard"
     return read, f"Withdrawn by the planner, and not counted: {told} ({left})."
 

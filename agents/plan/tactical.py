@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field, model_validator
 
@@ -10,7 +10,7 @@ from agents.plan.acceptance import AcceptanceAnswer
 from agents.plan.part import Name, PlanPart, Stage
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from agents.protocol.findings import Finding
 
 
 class Asset(PlanPart):
@@ -44,12 +44,12 @@ class Withdrawal(PlanPart):
         description="Words of its message; others stay.",
     )
 
-    def covers(self, finding: Mapping[str, Any]) -> bool:
+    def covers(self, finding: Finding) -> bool:
         """Whether a finding is about this."""
         return (
-            finding["rule"] == self.rule
-            and set(self.objects) <= set(finding["objects"])
-            and self.says in finding["message"]
+            finding.rule == self.rule
+            and set(self.objects) <= set(finding.objects)
+            and self.says in finding.message
         )
 
     def __str__(self) -> str:

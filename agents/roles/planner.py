@@ -14,9 +14,10 @@ from agents.roles.prompts import system_prompt
 from simworlds.llm.structured import fits
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence, Set
+    from collections.abc import Sequence, Set
 
     from agents.plan.part import Stage
+    from agents.protocol.findings import Finding
     from agents.roles.base import RoleContext
     from simworlds.llm.messages import Block, Picture
 
@@ -142,7 +143,7 @@ class Planner:
         verified: str,
         reviewed: str,
         left: str,
-        hard: Sequence[Mapping[str, Any]] = (),
+        hard: Sequence[Finding] = (),
     ) -> Decision:
         """What becomes of a stage that is kept open by ``why``. ``left`` tells how many retries and replans there are.
 
@@ -186,7 +187,7 @@ class Planner:
         return news
 
 
-def _withdrawal_faults(decision: Decision, attempt: int, hard: Sequence[Mapping[str, Any]]) -> list[str]:
+def _withdrawal_faults(decision: Decision, attempt: int, hard: Sequence[Finding]) -> list[str]:
     if attempt == 1:
         return ["withdraw: this is the first attempt; have it mended first."]
     return [

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from agents.loop.run import VERIFIER
+from agents.protocol.findings import Finding
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from agents.loop.run import Run
-    from agents.loop.task import Finding
     from agents.plan.edit import EditedActor
     from agents.plan.part import Stage
 
@@ -67,16 +67,4 @@ def _faults(actor: EditedActor, tags: Mapping[str, Any] | None) -> Iterator[Find
 
 
 def _finding(actor: EditedActor, message: str, fix: str) -> Finding:
-    return {
-        "rule": _RULE,
-        "severity": "hard",
-        "objects": [actor.name],
-        "message": message,
-        "fix": fix,
-        "outcome": "broken",
-        "frame": None,
-        "measured": None,
-        "tolerance": None,
-        "unit": "",
-        "at": None,
-    }
+    return Finding(_RULE, "hard", (actor.name,), message, fix)

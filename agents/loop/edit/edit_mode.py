@@ -87,7 +87,7 @@ def _task(run: Run, plan: EditPlan, before: Blocks) -> RunTask:
     actors = tuple(actor.name for actor in plan.actors)
     bare = RunTask("", None, actors, edit=True, tagged=before.tagged)
     known = verify(run, "light", bare).findings
-    told = [f"{one['rule']} {', '.join(one['objects'])}: {one['message']}" for one in known]
+    told = [f"{fault.rule} {', '.join(fault.objects)}: {fault.message}" for fault in known]
     return replace(
         bare,
         plan_text=format_edit_plan(plan, run.options.prompt, told),

@@ -9,12 +9,12 @@ from agents.loop.edit.consequences import Consequences
 from agents.loop.errors import RunError
 from agents.loop.events import Edited
 from agents.loop.run import VERIFIER
+from agents.protocol.findings import Finding
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from agents.loop.run import Run
-    from agents.loop.task import Finding
     from agents.plan.edit import EditPlan
     from agents.plan.part import Stage
 
@@ -100,19 +100,10 @@ def _unplanned_finding(edited: Edited, name: str) -> Finding:
             "Set it back to what it was in the file, or change a copy of it that only the plan's targets use"
         )
     why = edited.why.get(name, "")
-    return {
-        "rule": UNPLANNED,
-        "severity": "hard",
-        "objects": [own],
-        "message": f"{kind} {own!r} {what}, which no task of the edit plan asks for{f'; it is {why}' if why else ''}.",
-        "fix": f"{fix}.",
-        "outcome": "broken",
-        "frame": None,
-        "measured": None,
-        "tolerance": None,
-        "unit": "",
-        "at": None,
-    }
+    message = (
+        f"{kind} {own!r} {what}, which no task of the edit plan asks for{f'; it is {why}' if why else ''}."
+    )
+    return Finding(UNPLANNED, "hard", (own,), message, f"{fix}.")
 
 
 def _differing(one: Mapping[str, str], other: Mapping[str, str]) -> tuple[str, ...]:

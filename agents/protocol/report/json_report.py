@@ -7,12 +7,18 @@ import math
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from pydantic import TypeAdapter
 
-    from agents.protocol.findings import Finding, Report
+from agents.protocol.findings import Finding
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from agents.protocol.findings import Report
     from agents.protocol.report.summary import VerificationScope
     from agents.protocol.rule import Rule
+
+_FINDINGS = TypeAdapter(tuple[Finding, ...])
 
 
 def as_json(report: Report, scope: VerificationScope) -> dict[str, Any]:
@@ -40,6 +46,11 @@ def as_json(report: Report, scope: VerificationScope) -> dict[str, Any]:
         ],
         "findings": [finite_fields(finding) for finding in report.findings],
     }
+
+
+def read_findings(report: Mapping[str, Any]) -> tuple[Finding, ...]:
+    """The findings of a report that ``as_json`` gave. Raises ValidationError."""
+    return _FINDINGS.validate_python(report["findings"])
 
 
 def finite_fields(finding: Finding) -> dict[str, Any]:

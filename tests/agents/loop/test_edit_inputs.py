@@ -12,6 +12,7 @@ from agents.loop.edit.baseline import new_findings
 from agents.loop.edit.inputs import picture
 from agents.loop.errors import Unusable
 from agents.plan.edit import EditPlan, unknown_targets
+from agents.protocol.findings import Finding
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,11 +20,9 @@ if TYPE_CHECKING:
 STILL = {"kind": "still", "engine": "BLENDER_WORKBENCH", "resolution": [64, 36], "samples": 1}
 
 
-def depth(measured: float | None, *objects: str, **more: Any) -> dict[str, Any]:
-    return {
-        "rule": "V2", "severity": "hard", "objects": list(objects or ("Mug", "Table")), "message": "Too deep.",
-        "outcome": "broken", "measured": measured, "tolerance": 0.001, "unit": "m", **more,
-    }  # fmt: skip
+def depth(measured: float | None, *objects: str, **more: Any) -> Finding:
+    about = {"rule": "V2", "severity": "hard", "measured": measured, "tolerance": 0.001, "unit": "m", **more}
+    return Finding(objects=objects or ("Mug", "Table"), message="Too deep.", **about)
 
 
 # Faults that were there
@@ -34,8 +33,8 @@ def test_a_fault_that_was_there_is_not_new_however_its_objects_are_ordered() -> 
     assert new_findings([depth(0.05)], [depth(0.02)]) == []
 
 
-def floating(*names: str) -> dict[str, Any]:
-    return {"rule": "W1", "severity": "soft", "objects": names, "message": "", "fix": "", "outcome": "broken"}
+def floating(*names: str) -> Finding:
+    return Finding("W1", "soft", names, "")
 
 
 def test_what_stands_on_something_that_floated_before_is_not_held_against_the_edit() -> None:
@@ -47,7 +46,7 @@ def test_what_stands_on_something_that_floated_before_is_not_held_against_the_ed
 
 def test_a_fault_that_got_worse_is_new_and_says_what_it_was() -> None:
     (found,) = new_findings([depth(0.05)], [depth(0.06)])
-    assert found["message"] == "Too deep. The edit made this worse: it was 0.05 m."
+    assert found.message == "Too deep. The edit made this worse: it was 0.05 m."
 
 
 def test_what_is_too_little_is_worse_the_less_it_is() -> None:
@@ -57,7 +56,7 @@ def test_what_is_too_little_is_worse_the_less_it_is() -> None:
 
 def test_each_fault_that_was_there_excuses_one_and_the_worst_it_can() -> None:
     known, now = [depth(0.05), depth(0.02)], [depth(0.02), depth(0.05), depth(0.04)]
-    assert [one["measured"] for one in new_findings(known, now)] == [0.04]
+    assert [finding.measured for finding in new_findings(known, now)] == [0.04]
 
 
 def test_other_objects_other_rules_and_what_is_now_certain_are_new() -> None:

@@ -12,6 +12,7 @@ from team import ABORT, DONE, FINE, REPLAN, RETRY, Team, call, last_words, run, 
 
 from agents.loop.withdrawals import as_soft
 from agents.plan.tactical import Withdrawal
+from agents.protocol.findings import Finding
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -198,17 +199,12 @@ def test_what_the_plan_states_wrongly_is_withdrawn_once_mending_was_tried(
 
 def test_a_part_of_what_a_rule_finds_is_withdrawn() -> None:
     waits, rests = (
-        {
-            "rule": "T7",
-            "severity": "hard",
-            "objects": ["Bucket"],
-            "message": f"motion.phases[{at}] ('{name}'): it moves.",
-        }
+        Finding("T7", "hard", ("Bucket",), f"motion.phases[{at}] ('{name}'): it moves.")
         for at, name in enumerate(("bucket waits", "bucket rests"))
     )
     one = Withdrawal(rule="T7", objects=("Bucket",), says="'bucket waits'")
     findings, told = as_soft([waits, rests], [one])
-    assert [finding["severity"] for finding in findings] == ["soft", "hard"]
+    assert [finding.severity for finding in findings] == ["soft", "hard"]
     assert told == "Withdrawn by the planner, and not counted: T7 Bucket (1 hard beside it)."
     assert str(one) == "T7 Bucket ('bucket waits')"
 
