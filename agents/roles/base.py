@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 from pydantic import BaseModel
 
+from agents.roles.names import format_role
 from simworlds.llm import tokens
 from simworlds.llm.context import ContextLimits, fit
 from simworlds.llm.errors import CutShort, Declined, Misfit
@@ -174,7 +175,7 @@ class Conversation:
         try:
             found = ask_for(self._context, ask, reader, tries=_TRIES, on_text=self._say, form=form)
         except Misfit as misfit:
-            role = self._role.replace("_", " ")
+            role = format_role(self._role)
             told = f"The {role} ({ask.model}) gave no answer of the requested form, {_TRIES} times. The last:"
             raise Misfit([told, *misfit.problems], misfit.text) from misfit
         self._messages = (*self._messages, replace(found.turn, content=_words(found.turn)).message())

@@ -6,3 +6,8 @@ from typing import Literal, get_args
 
 Role = Literal["planner", "coder", "reviewer", "final_reviewer"]
 ROLES: tuple[Role, ...] = get_args(Role)
+
+
+def format_role(role: str) -> str:
+    """What a role is called in a sentence: "final reviewer"."""
+    return role.replace("_", " ")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Self
 from agents.loop.events import ModelAsked, ToolAnswered, ToolCalled
 from agents.loop.reducer import after
 from agents.loop.run_state import RunState
+from agents.roles.names import format_role
 from agents.views.event_lines import format_event
 from agents.views.formatting import format_clock
 from agents.views.now import Now, ToolProgress
@@ -94,7 +95,7 @@ class RunLog(RunView):
     def asking_again(self, role: str, why: str) -> None:
         """See Watcher."""
         with self._lock:
-            self._write(f"  {role.replace('_', ' ')} has no answer: {why}", self._since)
+            self._write(f"  {format_role(role)} has no answer: {why}", self._since)
 
     def progress(self, tool: str, done: float, total: float | None, text: str) -> None:
         """See Watcher. Not more often than every ten seconds."""

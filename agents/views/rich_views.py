@@ -17,6 +17,7 @@ from rich.text import Text
 from agents.loop.run import RENDER
 from agents.loop.run_state import ModelCall, ToolCall
 from agents.plan.part import STAGES
+from agents.roles.names import format_role
 from agents.views.cost_table import KINDS, costs_by_role
 from agents.views.event_lines import format_findings
 from agents.views.formatting import (
@@ -222,7 +223,7 @@ def _costs(run_state: RunState) -> list[RenderableType]:
     for row in rows:
         kinds = [(getattr(row.usage, kind), row.dollars[kind]) for kind in KINDS]
         table.add_row(
-            Text(shortened(row.role.replace("_", " ") or "all", 20), "" if row.role else "bold"),
+            Text(shortened(format_role(row.role) or "all", 20), "" if row.role else "bold"),
             *(Text(format_count(number)) for number in (row.calls, row.pictures)),
             *(Text(f"{format_count(tokens)} {format_money(dollars)}") for tokens, dollars in kinds),
             Text(format_money(row.cost) + (f" + {row.unpriced} unpriced" if row.unpriced else "")),
@@ -232,7 +233,7 @@ def _costs(run_state: RunState) -> list[RenderableType]:
 
 def _spoken(role: str, words: str, style: str = "") -> Text:
     """The end of what a role has said so far."""
-    line = Text(f"{plain(role).replace('_', ' ')} ", "cyan", no_wrap=True, overflow="ellipsis")
+    line = Text(f"{format_role(plain(role))} ", "cyan", no_wrap=True, overflow="ellipsis")
     return line.append(shortened(words[::-1], _SAID)[::-1], style or "default")
 
 

@@ -19,7 +19,7 @@ from agents.loop.run_state import ModelCall, Step, ToolCall
 from agents.plan.part import STAGES
 from agents.protocol.report.grouping import group_findings
 from agents.protocol.rules.catalogue import RULES
-from agents.roles.names import ROLES
+from agents.roles.names import ROLES, format_role
 from agents.views import formatting
 from agents.views.cost_table import KINDS, costs_by_role
 from agents.views.report import code
@@ -179,17 +179,13 @@ def _environment() -> Environment:
         swatch=formatting.swatch,
         stage_title=formatting.stage_title,
         clipped=code.clipped,
-        role=_format_role,
+        role=format_role,
     )
     return made
 
 
 def _own(name: str) -> str:
     return (_FOLDER / name).read_text("utf-8")
-
-
-def _format_role(role: str) -> str:
-    return role.replace("_", " ")
 
 
 # The result
@@ -254,7 +250,7 @@ class _Gallery:
 def _caption(call: ToolCall) -> str:
     name = call.name.removeprefix("blender_").replace("_", " ")
     about = _about(call)
-    return f"{_format_role(call.role)}: {name}" + (f" ({about})" if about else "")
+    return f"{format_role(call.role)}: {name}" + (f" ({about})" if about else "")
 
 
 def _about(call: ToolCall) -> str:
