@@ -19,22 +19,8 @@ from starlette.datastructures import Headers
 
 from agents.blender import docs_client
 from agents.blender.docs_client import DocsGone
-from agents.blender.tool_catalogue import FOR_CLIENTS, ONLINE, TOOLS, WITH_ASSETS
+from agents.blender.tool_catalogue import FOR_CLIENTS, HABITS, ONLINE, OPENING, TOOLS, WITH_ASSETS
 from agents.blender.tool_profiles import DEFAULT, Profile, is_within
-from agents.blender.tools import (
-    assets,
-    bake,
-    execute,
-    files,
-    job,
-    material_preview,
-    motion_sheet,
-    previews,
-    render,
-    scene_state,
-    trial,
-    uv_preview,
-)
 from agents.blender.tools.base import Call
 from agents.blender.tools.failures import describe_failure
 from simworlds.installed import own_version
@@ -59,31 +45,6 @@ if TYPE_CHECKING:
     _Listing = types.PaginatedRequestParams | None
     _Use = Callable[..., Awaitable[Result]]
 
-# In the order in which models are told of them.
-_HABITS = (
-    ("blender_plan_check", "for a whole scene: write its plan first and check it; the prompt make_scene says how"),
-    ("blender_docs", "before you use an API name that you have not looked up for this version, when you begin "
-     "a topic (cloth, materials), and on any error that is still unclear"),
-    execute.TOOL.told,
-    ("blender_check", "for scripts and add-ons that you write to files; blender_execute checks its code by itself"),
-    scene_state.TOOL.told,
-    previews.SINGLE_MESH.told,
-    previews.SCENE_LAYOUT.told,
-    material_preview.TOOL.told,
-    uv_preview.TOOL.told,
-    trial.TOOL.told,
-    bake.TOOL.told,
-    motion_sheet.TOOL.told,
-    assets.TOOL.told,
-    files.SAVE.told,
-    render.TOOL.told,
-    job.TOOL.told,
-)  # fmt: skip
-_OWN_BLENDER = (
-    "You have your own live Blender, without a window. The scene stays from call to call. If Blender crashes or hangs, "
-    "it is restarted from the last checkpoint, which the error names: read the scene's state before you go on. Lengths "
-    "are in metres, angles in Python in radians."
-)
 _CARE = "Check every step: read what the call says it changed, then look at the scene."
 _PROGRESS_SECONDS = 0.25
 _LIST_SECONDS = 20.0  # what a list waits for the knowledge base
@@ -97,8 +58,8 @@ class Suite:
     """Tools that a server has. ``opening`` and ``habits`` (tool, when to use it) tell models how to work."""
 
     tools: tuple[BlenderTool, ...] = TOOLS
-    opening: str = _OWN_BLENDER
-    habits: tuple[tuple[str, str], ...] = _HABITS
+    opening: str = OPENING
+    habits: tuple[tuple[str, str], ...] = HABITS
 
     def named(self, name: str) -> BlenderTool | None:
         """The tool of that name."""

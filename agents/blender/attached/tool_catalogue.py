@@ -1,4 +1,4 @@
-"""The tools of an open Blender, in the order in which clients list them."""
+"""The tools of an open Blender, in the order in which clients list them, and how models are told to work with them."""
 
 from __future__ import annotations
 
