@@ -33,19 +33,20 @@ _ADDON = "blender-mcp"
 _ASSETS = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=Path)
 
 
-@click.command()
-@click.option(
-    "--run",
-    type=click.Path(file_okay=False, resolve_path=True, path_type=Path),
-    help="Folder to work in; a run that is in it is continued. Default: a new folder for each client.",
+_blender = options.combine(
+    click.option(
+        "--run",
+        type=click.Path(file_okay=False, resolve_path=True, path_type=Path),
+        help="Folder to work in; a run that is in it is continued. Default: a new folder for each client.",
+    ),
+    options.VERSION,
+    options.EXECUTABLE,
+    click.option("--read", type=_ASSETS, multiple=True, help="A folder that Blender may read, for assets."),
+    click.option("--assets", type=_ASSETS, help="Your asset library: .blend assets, HDRIs, texture sets."),
+    click.option("--online", is_flag=True, help="Let assets be fetched from Poly Haven into --assets."),
+    options.SANDBOX,
 )
-@options.VERSION
-@options.EXECUTABLE
-@click.option("--read", type=_ASSETS, multiple=True, help="A folder that Blender may read, for assets.")
-@click.option("--assets", type=_ASSETS, help="Your asset library: .blend assets, HDRIs, texture sets.")
-@click.option("--online", is_flag=True, help="Let assets be fetched from Poly Haven into --assets.")
-@options.SANDBOX
-@click.option(
+_tools = click.option(
     "--tools",
     "profile",
     type=click.Choice(PROFILES),
@@ -54,51 +55,63 @@ _ASSETS = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=
     help="docs: the documentation and the check of code, without a Blender; look: also what reads a scene; build: also "
     "what changes it, renders and checks plans; all: every tool, with whole schemas, for programs.",
 )
-@click.option(
-    "--as",
-    "stands_for",
-    type=click.Choice([_ADDON]),
-    help="Instead of MCP, speak the protocol of blender-mcp's add-on, on 127.0.0.1, port 9876.",
+_addon = options.combine(
+    click.option(
+        "--as",
+        "stands_for",
+        type=click.Choice([_ADDON]),
+        help="Instead of MCP, speak the protocol of blender-mcp's add-on, on 127.0.0.1, port 9876.",
+    ),
+    click.option(
+        "--timeout",
+        type=FiniteRange(1, 3600),
+        default=170.0,
+        show_default=True,
+        metavar="SECONDS",
+        help="With --as: how long code may run. Its clients wait for 180 seconds.",
+    ),
+    click.option(
+        "--screenshots",
+        type=_ASSETS,
+        multiple=True,
+        help="With --as: a folder that screenshots may be written to, besides the temporary one.",
+    ),
 )
-@click.option(
-    "--timeout",
-    type=FiniteRange(1, 3600),
-    default=170.0,
-    show_default=True,
-    metavar="SECONDS",
-    help="With --as: how long code may run. Its clients wait for 180 seconds.",
-)
-@click.option(
-    "--screenshots",
-    type=_ASSETS,
-    multiple=True,
-    help="With --as: a folder that screenshots may be written to, besides the temporary one.",
-)
-@click.option(
+_attach = click.option(
     "--attach",
     is_flag=False,
     flag_value="open",
     metavar="[auto|WHICH]",
     help="Work in the open Blender; WHICH of several: its process or file. auto: if there is one, else in its own.",
 )
-@click.option("--http", "over_http", is_flag=True, help="Serve streamable HTTP instead of stdio.")
-@click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
-@click.option(
-    "--port", type=click.IntRange(0, 65535), default=_PORT, show_default=True, help="0 takes a free port."
+_http = options.combine(
+    click.option("--http", "over_http", is_flag=True, help="Serve streamable HTTP instead of stdio."),
+    click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on."),
+    click.option(
+        "--port", type=click.IntRange(0, 65535), default=_PORT, show_default=True, help="0 takes a free port."
+    ),
+    click.option("--token", envvar="SIMWORLDS_TOKEN", show_envvar=True, help="Token that clients must send."),
+    click.option("--allow-host", multiple=True, metavar="NAME", help="Another host name of this server."),
+    click.option(
+        "--sessions", type=click.IntRange(1), default=4, show_default=True, help="Most Blenders at once."
+    ),
+    click.option(
+        "--idle",
+        type=FiniteRange(0, min_open=True),
+        default=30.0,
+        show_default=True,
+        metavar="MINUTES",
+        help="Close a Blender after this long without a call.",
+    ),
 )
-@click.option("--token", envvar="SIMWORLDS_TOKEN", show_envvar=True, help="Token that clients must send.")
-@click.option("--allow-host", multiple=True, metavar="NAME", help="Another host name of this server.")
-@click.option(
-    "--sessions", type=click.IntRange(1), default=4, show_default=True, help="Most Blenders at once."
-)
-@click.option(
-    "--idle",
-    type=FiniteRange(0, min_open=True),
-    default=30.0,
-    show_default=True,
-    metavar="MINUTES",
-    help="Close a Blender after this long without a call.",
-)
+
+
+@click.command()
+@_blender
+@_tools
+@_addon
+@_attach
+@_http
 @click.pass_context
 def mcp(  # noqa: PLR0913 - one for each option
     context: click.Context,
@@ -129,40 +142,27 @@ def mcp(  # noqa: PLR0913 - one for each option
     Blender that the user has open (simworlds extension install). On an address other than
     loopback clients must send a token: Authorization: Bearer …
     """
-    _check_options(context, over_http=over_http, stands_for=stands_for)
-    if online and assets is None:
-        raise click.UsageError("--online needs --assets, the folder that assets are fetched into.")
-    if attach is not None and (blender is not None or blender_exe is not None):
-        raise click.UsageError(
-            "--attach works in the Blender that is open: leave --blender and --blender-exe out."
-        )
-    if attach is not None and stands_for is not None:
-        raise click.UsageError(
-            f"--attach does not go with --as {stands_for}: that serves a Blender of its own."
-        )
-    if run is not None and _is_foreign(run):
-        raise click.UsageError(f"--run: {run} is not empty, and holds no run. Choose another folder.")
-    if run is not None and (fault := _fault_of(run)):
-        raise click.UsageError(f"--run: {run} cannot be made: {fault}.")
+    _check_options(context)
+    if run is not None:
+        _check_run(run)
     # Nothing that is loaded is garbage, and looking for it would slow the start.
     gc.disable()
     from agents.blender.blender_sessions import SessionSetup  # noqa: PLC0415
     from simworlds.sandbox.errors import CannotStart  # noqa: PLC0415 - not for --help
     from simworlds.sandbox.launch import find_blender  # noqa: PLC0415
 
-    setup_of = partial(
-        SessionSetup,
-        version=blender,
-        blender_exe=blender_exe,
-        read=read,
-        run=run,
-        assets=assets,
-        online=online,
-    )
     try:
         if blender_exe is not None:
             find_blender(blender, blender_exe)
-        setup = setup_of(_confined(sandbox, announced=profile != "docs"))
+        setup = SessionSetup(
+            _confined(sandbox, announced=profile != "docs"),
+            version=blender,
+            blender_exe=blender_exe,
+            read=read,
+            run=run,
+            assets=assets,
+            online=online,
+        )
         kind = _OwnBlenders(profile) if attach is None else _attached(attach, profile)
         if stands_for is not None:
             _as_addon(setup, port if _is_typed(context, "port") else None, timeout, screenshots)
@@ -175,27 +175,25 @@ def mcp(  # noqa: PLR0913 - one for each option
         sys.exit(_ERROR)
 
 
-def _fault_of(run: Path) -> str:
-    """Why there can be no such folder; empty if there is one now."""
-    try:
-        run.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        return error.strerror or str(error)
-    return ""
-
-
-def _is_foreign(run: Path) -> bool:
-    from agents.blender.run_folder import RunFolder  # noqa: PLC0415 - not for --help
-
-    return RunFolder.is_foreign(run)
-
-
-def _is_typed(context: click.Context, name: str) -> bool:
-    return context.get_parameter_source(name) is _TYPED
-
-
-def _check_options(context: click.Context, *, over_http: bool, stands_for: str | None) -> None:
+def _check_options(context: click.Context) -> None:
     """Raises UsageError for options that do not go together."""
+    given = context.params
+    _check_transport(context, over_http=given["over_http"], stands_for=given["stands_for"])
+    if given["online"] and given["assets"] is None:
+        raise click.UsageError("--online needs --assets, the folder that assets are fetched into.")
+    if given["attach"] is None:
+        return
+    if given["blender"] is not None or given["blender_exe"] is not None:
+        raise click.UsageError(
+            "--attach works in the Blender that is open: leave --blender and --blender-exe out."
+        )
+    if given["stands_for"] is not None:
+        raise click.UsageError(
+            f"--attach does not go with --as {given['stands_for']}: that serves a Blender of its own."
+        )
+
+
+def _check_transport(context: click.Context, *, over_http: bool, stands_for: str | None) -> None:
     if over_http and stands_for is not None:
         raise click.UsageError(
             f"--http does not go with --as {stands_for}: its clients know no other protocol."
@@ -205,6 +203,22 @@ def _check_options(context: click.Context, *, over_http: bool, stands_for: str |
         raise click.UsageError(f"--{for_http[0].replace('_', '-')} needs --http.")
     if stands_for is None and (for_addon := [name for name in _ONLY_AS if _is_typed(context, name)]):
         raise click.UsageError(f"--{for_addon[0]} needs --as {_ADDON}.")
+
+
+def _is_typed(context: click.Context, name: str) -> bool:
+    return context.get_parameter_source(name) is _TYPED
+
+
+def _check_run(run: Path) -> None:
+    """Makes the folder of a run. Raises UsageError where that cannot be, or it holds something else."""
+    from agents.blender.run_folder import RunFolder  # noqa: PLC0415 - not for --help
+
+    if RunFolder.is_foreign(run):
+        raise click.UsageError(f"--run: {run} is not empty, and holds no run. Choose another folder.")
+    try:
+        run.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise click.UsageError(f"--run: {run} cannot be made: {error.strerror or error}.") from error
 
 
 def _as_addon(setup: SessionSetup, port: int | None, timeout: float, screenshots: tuple[Path, ...]) -> None:
