@@ -10,10 +10,10 @@ import json
 import sys
 from pathlib import Path
 
-from agents.loop.journal import NAME, read_rows
-from agents.loop.reducer import read_run_state
-from simworlds.llm.recorded import read_turns
-from simworlds.llm.transcript import write_turn
+from agents.loop.record.journal import NAME, read_rows
+from agents.loop.record.reducer import read_run_state
+from simworlds.llm.records.recorded import read_turns
+from simworlds.llm.records.transcript import write_turn
 
 _WHOLE = {"end_turn", "tool_use"}
 

@@ -9,8 +9,8 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from agents.loop.journal import NAME, read_rows
-from agents.loop.reducer import read_run_state
+from agents.loop.record.journal import NAME, read_rows
+from agents.loop.record.reducer import read_run_state
 from agents.plan.part import STAGES
 from bench.markdown_tables import Table, format_table
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from agents.roles.names import ROLES
-from simworlds.llm.providers import PROVIDERS, TOLD_DEFAULTS
+from simworlds.llm.apis.providers import PROVIDERS, TOLD_DEFAULTS
 from simworlds.operating_system import SYSTEM
 from simworlds.own_command import own_command
 from simworlds.terminal.finite_range import FiniteRange
@@ -296,7 +296,7 @@ def _work(
     work: Callable[[RunSession], Ended], root: Path, given: dict[str, Any], *, render: bool = False
 ) -> None:
     from agents.loop.errors import RunError  # noqa: PLC0415 - not for --help
-    from agents.loop.reducer import read_run_state  # noqa: PLC0415
+    from agents.loop.record.reducer import read_run_state  # noqa: PLC0415
     from agents.loop.session import RunSession, Stop, resume_command  # noqa: PLC0415
     from agents.views.live_view import RunView, make_view  # noqa: PLC0415
     from agents.views.report.early import ReportWriter  # noqa: PLC0415

@@ -163,7 +163,7 @@ def _plan_for(scene: Path, given: Path | None) -> ScenePlan | None:
 
 def _plan_of_run(folder: Path) -> Path | None:
     """The plan in a folder, if the folder is a run's."""
-    from agents.loop.journal import NAME, PLAN_NAME  # noqa: PLC0415 - not for --help
+    from agents.loop.record.journal import NAME, PLAN_NAME  # noqa: PLC0415 - not for --help
 
     path = folder / PLAN_NAME
     return path if path.is_file() and (folder / NAME).is_file() else None

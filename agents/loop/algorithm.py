@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 from agents.loop.asset_library import prompt_with_assets
 from agents.loop.errors import NotSaved
-from agents.loop.events import PlanMade, StageMoved
-from agents.loop.film_time import room_for_film
-from agents.loop.journal import PLAN_NAME
-from agents.loop.rendering import LastStage
-from agents.loop.run import START, plan_file
+from agents.loop.film.allotted_time import room_for_film
+from agents.loop.film.rendering import LastStage
+from agents.loop.record.events import PlanMade, StageMoved
+from agents.loop.record.journal import PLAN_NAME
+from agents.loop.running.run import START, plan_file
 from agents.loop.stage import StageLoop
 from agents.loop.task import RunTask
 from agents.plan.part import STAGES
@@ -20,8 +20,8 @@ from agents.roles.planner import Planner, format_plan
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from agents.loop.rendering import RenderResult
-    from agents.loop.run import Run
+    from agents.loop.film.rendering import RenderResult
+    from agents.loop.running.run import Run
     from agents.plan.part import Stage
     from agents.plan.scene import RenderSettings, ScenePlan
 

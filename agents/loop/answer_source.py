@@ -9,23 +9,23 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from agents.loop.errors import NoRun
-from agents.loop.events import MendWeighed, RoomTold, TimeTold, read_event
-from agents.loop.journal import NAME, read_rows
+from agents.loop.record.events import MendWeighed, RoomTold, TimeTold, read_event
+from agents.loop.record.journal import NAME, read_rows
 from agents.roles.names import ROLES
-from simworlds.llm.attempts import Settings
+from simworlds.llm.apis.attempts import Settings
+from simworlds.llm.apis.providers import connect
 from simworlds.llm.errors import OverBudget
-from simworlds.llm.providers import connect
-from simworlds.llm.recorded import Recorded, Recording, read_turns
+from simworlds.llm.records.recorded import Recorded, Recording, read_turns
 from simworlds.llm.spending import Metered, no_price
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
     from contextlib import ExitStack
 
-    from agents.loop.journal import Journal, Row
     from agents.loop.options import Options
+    from agents.loop.record.journal import Journal, Row
+    from simworlds.llm.apis.retries import Retry
     from simworlds.llm.messages import Model
-    from simworlds.llm.retries import Retry
     from simworlds.llm.spending import Spending
 
 _MODEL = ("model.asked", "model.answered")

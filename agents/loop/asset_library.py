@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.loop.run import RUNNER
+from agents.loop.running.run import RUNNER
 
 if TYPE_CHECKING:
-    from agents.loop.run import Run
+    from agents.loop.running.run import Run
 
 ASSETS = "blender_assets"
 _TOLD = """\

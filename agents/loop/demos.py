@@ -10,8 +10,8 @@ from agents.blender.blender_sessions import SessionSetup
 from agents.loop.answer_source import transcript_folder, transcripts
 from agents.loop.errors import NoRun, RunError
 from agents.loop.options import BEFORE_DRAFTS
-from agents.loop.reducer import read_run_state
-from agents.loop.tool_client import ToolClient
+from agents.loop.record.reducer import read_run_state
+from agents.loop.running.tool_client import ToolClient
 from simworlds.sandbox.confined_command import best_sandbox
 
 if TYPE_CHECKING:

@@ -7,14 +7,14 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from agents.loop.errors import RunError
-from agents.loop.evidence import still
-from agents.loop.judging import verify
-from agents.loop.run import RENDER, RUNNER, START
+from agents.loop.review.evidence import still
+from agents.loop.review.verdicts import verify
+from agents.loop.running.run import RENDER, RUNNER, START
 from simworlds.sandbox.errors import BlenderError
 
 if TYPE_CHECKING:
-    from agents.loop.run import Run
-    from agents.loop.tool_client import ToolOutcome
+    from agents.loop.running.run import Run
+    from agents.loop.running.tool_client import ToolOutcome
 
 _LOG = logging.getLogger(__name__)
 LATEST = "latest.png"

@@ -7,8 +7,8 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
+from simworlds.llm.apis.providers import DEFAULT_MODELS, ProviderName
 from simworlds.llm.prices import Prices, read_price
-from simworlds.llm.providers import DEFAULT_MODELS, ProviderName
 
 Mode = Literal["make", "edit"]
 Origin = Literal["live", "session", "replay"]

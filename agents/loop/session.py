@@ -17,13 +17,13 @@ from agents.loop.answer_source import LiveOptions, check_model, make_model, repe
 from agents.loop.edit.edit_mode import edit
 from agents.loop.edit.inputs import check_inputs
 from agents.loop.errors import Aborted, NoRun, Stopping, Unusable
-from agents.loop.events import RunBegan, RunEnded, SessionBegan
-from agents.loop.journal import NAME, Journal
 from agents.loop.leaving import LATEST, leave
 from agents.loop.options import BEFORE_DRAFTS, Options, RunLimits
-from agents.loop.reducer import read_run_state
-from agents.loop.run import SCENE, Run
-from agents.loop.tool_client import ToolClient
+from agents.loop.record.events import RunBegan, RunEnded, SessionBegan
+from agents.loop.record.journal import NAME, Journal
+from agents.loop.record.reducer import read_run_state
+from agents.loop.running.run import SCENE, Run
+from agents.loop.running.tool_client import ToolClient
 from agents.roles.names import ROLES
 from simworlds.errors import UserError
 from simworlds.folder_lock import locked
@@ -40,8 +40,8 @@ if TYPE_CHECKING:
     import threading
     from collections.abc import Callable
 
-    from agents.loop.events import Event
-    from simworlds.llm.retries import Retry
+    from agents.loop.record.events import Event
+    from simworlds.llm.apis.retries import Retry
 
 _LOG = logging.getLogger(__name__)
 RESULTS = ("video.mp4", "still.png", "draft.mp4", LATEST)  # what a run shows, the best first

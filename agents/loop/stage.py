@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 from agents.loop.edit.comparison import references
 from agents.loop.errors import Aborted, NotSaved
-from agents.loop.events import Decided, StageMoved, TacticMade, Withdrew
-from agents.loop.judging import format_review, judge, review, still_open, verify, without
+from agents.loop.record.events import Decided, StageMoved, TacticMade, Withdrew
+from agents.loop.review.verdicts import format_review, judge, review, still_open, verify, without
+from agents.loop.review.withdrawals import format_withdrawn
 from agents.loop.topic_page import topic_page
-from agents.loop.withdrawals import format_withdrawn
 from agents.plan.tactical import Decision
 from agents.roles.coder import Coder
 from agents.roles.reviewer import Reviewer
@@ -19,8 +19,8 @@ from agents.roles.sheets import solvers_of
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from agents.loop.judging import VerifierVerdict
-    from agents.loop.run import Run
+    from agents.loop.review.verdicts import VerifierVerdict
+    from agents.loop.running.run import Run
     from agents.loop.task import RunTask
     from agents.plan.part import Stage
     from agents.plan.tactical import Review, TacticalPlan

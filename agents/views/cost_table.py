@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 from pydantic import ValidationError
 
 from agents.loop.options import BEFORE_DRAFTS, Options
-from agents.loop.run_state import ModelCall
+from agents.loop.record.run_state import ModelCall
 from simworlds.llm.messages import Usage
 from simworlds.llm.prices import Prices
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from agents.loop.run_state import RunState
+    from agents.loop.record.run_state import RunState
 
 KINDS = {"input": "Input", "cache_read": "Cache read", "cache_write": "Cache write", "output": "Output"}
 

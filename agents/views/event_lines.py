@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.loop import events
-from agents.loop.run_state import ModelCall, ToolCall
+from agents.loop.record import events
+from agents.loop.record.run_state import ModelCall, ToolCall
 from agents.protocol.report.grouping import group_findings
 from agents.views.formatting import (
     describe_attempt,
@@ -22,7 +22,7 @@ from simworlds.counting import counted
 from simworlds.terminal.text import shortened
 
 if TYPE_CHECKING:
-    from agents.loop.run_state import RunState, StageRun, Step
+    from agents.loop.record.run_state import RunState, StageRun, Step
 
 _WORDS = 140
 _FINDINGS = 3

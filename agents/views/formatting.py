@@ -10,8 +10,8 @@ from simworlds.terminal.text import plain
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from agents.loop.events import FilmFitted
-    from agents.loop.run_state import Attempt, RunState
+    from agents.loop.record.events import FilmFitted
+    from agents.loop.record.run_state import Attempt, RunState
     from simworlds.llm.messages import Usage
     from simworlds.llm.spending import SpendingRow
 

@@ -9,9 +9,9 @@ import threading
 import time
 from typing import TYPE_CHECKING, Self
 
-from agents.loop.events import ModelAsked, ToolAnswered, ToolCalled
-from agents.loop.reducer import after
-from agents.loop.run_state import RunState
+from agents.loop.record.events import ModelAsked, ToolAnswered, ToolCalled
+from agents.loop.record.reducer import after
+from agents.loop.record.run_state import RunState
 from agents.roles.names import format_role
 from agents.views.event_lines import format_event
 from agents.views.formatting import format_clock
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from rich.console import RenderableType
 
-    from agents.loop.events import Event
+    from agents.loop.record.events import Event
 
 _PER_SECOND = 8
 _LINE_SECONDS = 10.0  # between two lines on the progress of a tool

@@ -14,8 +14,8 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from agents.loop.run import RENDER
-from agents.loop.run_state import ModelCall, ToolCall
+from agents.loop.record.run_state import ModelCall, ToolCall
+from agents.loop.running.run import RENDER
 from agents.plan.part import STAGES
 from agents.roles.names import format_role
 from agents.views.cost_table import KINDS, costs_by_role
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
     from rich.console import RenderableType
 
-    from agents.loop.run_state import Attempt, RunState, Step
+    from agents.loop.record.run_state import Attempt, RunState, Step
 
 _MARKS = {
     "closed": ("✓", "green"),

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from agents.blender.launch import runs_folder
 from agents.blender.run_folder import roots
 from agents.loop.errors import NoRun
-from agents.loop.events import RunEnded
-from agents.loop.journal import NAME
-from agents.loop.reducer import read_run_state
-from agents.loop.run_state import RunState
+from agents.loop.record.events import RunEnded
+from agents.loop.record.journal import NAME
+from agents.loop.record.reducer import read_run_state
+from agents.loop.record.run_state import RunState
 from agents.views.rich_views import run_summary, runs_table
 
 if TYPE_CHECKING:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.loop.run import RENDER
-from agents.loop.run_state import ToolCall
+from agents.loop.record.run_state import ToolCall
+from agents.loop.running.run import RENDER
 from agents.views.formatting import format_time
 
 if TYPE_CHECKING:
-    from agents.loop.run_state import RunState
+    from agents.loop.record.run_state import RunState
     from agents.plan.part import Stage
     from agents.views.now import Now
 

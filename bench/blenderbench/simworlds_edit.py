@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from agents.loop.errors import RunError
-from agents.loop.journal import NAME as JOURNAL
-from agents.loop.reducer import read_run_state
+from agents.loop.record.journal import NAME as JOURNAL
+from agents.loop.record.reducer import read_run_state
 from agents.loop.stage import MAX_REPLANS_PER_STAGE, MAX_RETRIES_PER_STAGE
 from bench.blenderbench.edit_system import EditOutput, prepare_start
 from bench.blenderbench.errors import EditSystemNotReady, TaskFailed
@@ -19,7 +19,7 @@ from bench.sweep.command import last_output, run_simworlds
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from agents.loop.run_state import RunState
+    from agents.loop.record.run_state import RunState
     from bench.blenderbench.edit_system import Tell
     from bench.blenderbench.results import TaskFolder
     from bench.blenderbench.task_set import BenchTask

@@ -20,8 +20,8 @@ from pydantic import BaseModel, ConfigDict, Field
 from bench.judge.answer_cache import AnswerCache, key_of
 from bench.judge.ask import ask_judge
 from bench.judge.usage import AnswerCost
-from simworlds.llm.canonical import form_of
 from simworlds.llm.messages import Ask, Picture, Text, Tool, user
+from simworlds.llm.records.canonical import form_of
 from simworlds.llm.structured import fits
 from simworlds.schemas.json_schema import schema_of
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from bench.commands.shared_options import MEMORY, judge_cache, price_of, with_blender_version
-from simworlds.llm.providers import PROVIDERS, TOLD_DEFAULTS
+from simworlds.llm.apis.providers import PROVIDERS, TOLD_DEFAULTS
 from simworlds.terminal.finite_range import FiniteRange
 
 if TYPE_CHECKING:

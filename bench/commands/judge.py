@@ -12,7 +12,7 @@ import click
 
 from bench.commands.scenes import chosen_spec
 from bench.commands.shared_options import judge_cache, price_of, tell_on_terminal
-from simworlds.llm.providers import PROVIDERS, TOLD_DEFAULTS
+from simworlds.llm.apis.providers import PROVIDERS, TOLD_DEFAULTS
 from simworlds.terminal.finite_range import FiniteRange
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def judge(frames: tuple[Path, ...], **given: Any) -> None:
     Exit code 0: judged, whatever the score. 2: not judged; the reason is printed.
     """
     from bench.judge.errors import NotJudged  # noqa: PLC0415 - not for --help
-    from simworlds.llm.providers import DEFAULT_MODELS  # noqa: PLC0415
+    from simworlds.llm.apis.providers import DEFAULT_MODELS  # noqa: PLC0415
 
     given["price"] = price_of(given["price"])
     given["model"] = given["model"] or DEFAULT_MODELS[given["provider"]]

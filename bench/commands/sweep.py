@@ -13,7 +13,7 @@ import click
 from bench.commands.shared_options import blender_options, judge_cache, price_of, with_audit_options
 from bench.commands.system_options import system_of, with_system_options
 from simworlds.counting import counted
-from simworlds.llm.providers import PROVIDERS
+from simworlds.llm.apis.providers import PROVIDERS
 from simworlds.terminal.finite_range import FiniteRange
 from simworlds.terminal.options import combine
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from simworlds.llm.providers import PROVIDERS
+from simworlds.llm.apis.providers import PROVIDERS
 from simworlds.terminal.finite_range import FiniteRange
 from simworlds.terminal.options import combine
 

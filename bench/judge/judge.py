@@ -16,7 +16,7 @@ from bench.judge.items import PromptItems, items_of, one_line
 from bench.judge.pictures import JudgedFrames, read_frames
 from bench.judge.questions import judging, prompt_version
 from bench.judge.verdicts import CachedVerdicts, JudgedItem, Judgement, verdicts_reader
-from simworlds.llm.request import clean
+from simworlds.llm.apis.claude_request import clean
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -10,21 +10,21 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, NamedTuple
 
 from bench.judge.errors import NotJudged
-from simworlds.llm.attempts import Settings
+from simworlds.llm.apis.attempts import Settings
+from simworlds.llm.apis.openai_chat import NO_PACKAGE
+from simworlds.llm.apis.providers import DEFAULT_MODELS, PROVIDERS, connect
 from simworlds.llm.errors import Rejected
 from simworlds.llm.messages import Text
-from simworlds.llm.openai_chat import NO_PACKAGE
 from simworlds.llm.prices import Prices
-from simworlds.llm.providers import DEFAULT_MODELS, PROVIDERS, connect
 from simworlds.llm.spending import Metered, Spending
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from simworlds.llm.apis.providers import Connection, ProviderName
+    from simworlds.llm.apis.retries import Retry
     from simworlds.llm.messages import Ask, Turn
     from simworlds.llm.prices import Price
-    from simworlds.llm.providers import Connection, ProviderName
-    from simworlds.llm.retries import Retry
 
 
 _STRUCTURED = ("openai",)  # providers with structured outputs

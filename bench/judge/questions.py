@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 from pydantic import BaseModel, ConfigDict, Field
 
 from bench.judge.dimensions import fixed_items
-from simworlds.llm.canonical import form_of
 from simworlds.llm.messages import Ask, Picture, Text, Tool, user
+from simworlds.llm.records.canonical import form_of
 from simworlds.schemas.json_schema import schema_of
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from PIL import Image
 
 from agents.blender.blender_sessions import SessionSetup
-from agents.loop.tool_client import ToolClient
+from agents.loop.running.tool_client import ToolClient
 from simworlds.sandbox.confined_command import best_sandbox
 
 if TYPE_CHECKING:

@@ -28,7 +28,7 @@ from pydantic import BaseModel, ValidationError
 
 from kb_build.errors import SummaryError
 from kb_build.summaries.replies import SummaryReply
-from simworlds.llm.anthropic_client import anthropic_client
+from simworlds.llm.apis.anthropic_client import anthropic_client
 from simworlds.llm.errors import Rejected
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from anthropic.types.messages.batch_create_params import Request
 
     from kb_build.summaries.types import ClaudeOptions
-    from simworlds.llm.anthropic_client import Credentials
+    from simworlds.llm.apis.anthropic_client import Credentials
 
 _T = TypeVar("_T")
 _CLOCK_SKEW_SECONDS = 3600.0

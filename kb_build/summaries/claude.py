@@ -31,7 +31,7 @@ from kb_build.summaries.types import (
     SummaryReport,
     summary_key,
 )
-from simworlds.llm.anthropic_client import Credentials
+from simworlds.llm.apis.anthropic_client import Credentials
 from simworlds.llm.errors import Rejected
 
 if TYPE_CHECKING:

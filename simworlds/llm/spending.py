@@ -19,8 +19,8 @@ from simworlds.llm.prices import Prices
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
 
+    from simworlds.llm.apis.retries import Retry
     from simworlds.llm.messages import Ask, Model, Turn
-    from simworlds.llm.retries import Retry
 
 _MARGIN = 1.3  # factor by which token estimates may fall short, until real counts are known
 _SURE = 1.1  # on top of the worst factor seen

@@ -20,10 +20,10 @@ from broken_input import LONGEST, broken
 from hypothesis import strategies as st
 
 from agents.blender.inside.blend.stored_texts import UnknownForm, replace_texts
-from agents.loop import events
 from agents.loop.errors import NoRun
-from agents.loop.journal import NAME, read_rows
-from agents.loop.reducer import read_run_state
+from agents.loop.record import events
+from agents.loop.record.journal import NAME, read_rows
+from agents.loop.record.reducer import read_run_state
 from agents.plan.check import read_plan
 from agents.protocol.verify_request import plan_from
 from kb_build.errors import KBBuildError, SourceError

@@ -11,7 +11,7 @@ from agents.protocol.report.json_report import read_findings
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from agents.loop.tool_client import ToolOutcome
+    from agents.loop.running.tool_client import ToolOutcome
     from agents.protocol.findings import Finding
 
 _SLACK = 0.01  # of what was measured before, by which it may be worse: measuring is not exact

@@ -16,7 +16,7 @@ from simworlds.sandbox.errors import Refusal
 from simworlds.sandbox.picture_decoder import PictureDecoder
 
 if TYPE_CHECKING:
-    from agents.loop.run import Run
+    from agents.loop.running.run import Run
     from agents.loop.task import RunTask
     from simworlds.llm.messages import Block
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from agents.loop.run import VERIFIER
+from agents.loop.running.run import VERIFIER
 from agents.protocol.findings import Finding
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from agents.loop.run import Run
+    from agents.loop.running.run import Run
     from agents.plan.edit import EditedActor
     from agents.plan.part import Stage
 

@@ -11,19 +11,19 @@ from agents.loop.asset_library import prompt_with_assets
 from agents.loop.edit.inputs import picture
 from agents.loop.edit.untouched import blocks, compared, unplanned
 from agents.loop.errors import Unusable
-from agents.loop.events import PlanMade, ReferenceKept
-from agents.loop.evidence import still, still_width
-from agents.loop.journal import PLAN_NAME
-from agents.loop.judging import verify
-from agents.loop.run import RENDER, RUNNER, START, plan_file
+from agents.loop.record.events import PlanMade, ReferenceKept
+from agents.loop.record.journal import PLAN_NAME
+from agents.loop.review.evidence import still, still_width
+from agents.loop.review.verdicts import verify
+from agents.loop.running.run import RENDER, RUNNER, START, plan_file
 from agents.loop.task import RunTask
 from agents.roles.planner import Planner, format_edit_plan
 from simworlds.llm.messages import Picture
 
 if TYPE_CHECKING:
     from agents.loop.edit.untouched import Blocks
-    from agents.loop.rendering import RenderResult
-    from agents.loop.run import Run
+    from agents.loop.film.rendering import RenderResult
+    from agents.loop.running.run import Run
     from agents.plan.edit import EditPlan
     from agents.plan.part import Stage
     from agents.plan.scene import RenderSettings

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 from agents.loop.edit.consequences import Consequences
 from agents.loop.errors import RunError
-from agents.loop.events import Edited
-from agents.loop.run import VERIFIER
+from agents.loop.record.events import Edited
+from agents.loop.running.run import VERIFIER
 from agents.protocol.findings import Finding
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from agents.loop.run import Run
+    from agents.loop.running.run import Run
     from agents.plan.edit import EditPlan
     from agents.plan.part import Stage
 

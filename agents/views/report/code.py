@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from pygments.lexer import Lexer
 
-    from agents.loop.run_state import Attempt
+    from agents.loop.record.run_state import Attempt
 
 LONGEST = 40_000  # letters of one text
 _LINES = 3000  # of a script that is compared

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from agents.loop.errors import NoRun
-from agents.loop.events import Drafted, Event, StageMoved
+from agents.loop.record.events import Drafted, Event, StageMoved
 from agents.views.report.page import write_report
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from agents.loop.reducer import read_run_state
-from agents.loop.run_state import ModelCall, Step, ToolCall
+from agents.loop.record.reducer import read_run_state
+from agents.loop.record.run_state import ModelCall, Step, ToolCall
 from agents.plan.part import STAGES
 from agents.protocol.report.grouping import group_findings
 from agents.protocol.rules.catalogue import RULES
@@ -37,7 +37,7 @@ from simworlds.terminal.text import shortened
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from agents.loop.run_state import Attempt, RunState, StageRun
+    from agents.loop.record.run_state import Attempt, RunState, StageRun
     from agents.protocol.report.grouping import FindingGroup
 
 NAME = "report.html"

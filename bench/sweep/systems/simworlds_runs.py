@@ -15,18 +15,18 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any, cast
 
 from agents.loop.errors import NoRun
-from agents.loop.journal import NAME, read_rows
+from agents.loop.record.journal import NAME, read_rows
 from bench.sweep.command import last_output, run_simworlds
 from bench.sweep.records import FINAL, Outcome, SystemInfo
 from bench.sweep.systems.system import SystemNotReady, SystemOutput
+from simworlds.llm.apis.providers import PROVIDERS, connect
 from simworlds.llm.errors import ModelError
-from simworlds.llm.providers import PROVIDERS, connect
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from bench.scenes.spec import Spec
-    from simworlds.llm.providers import ProviderName
+    from simworlds.llm.apis.providers import ProviderName
 
 # Scene → the transcript whose prompt asks for the same actors. That of the edit has no scene.
 TRANSCRIPTS = {

@@ -16,7 +16,7 @@ from kb_serve.bases import Bases
 from kb_serve.rebuild import Upkeep
 from kb_serve.service import Service
 from simworlds.llm.messages import ToolUse
-from simworlds.llm.transcript import read_folder
+from simworlds.llm.records.transcript import read_folder
 from simworlds.sandbox.replies import Malformed, parse_value, unread
 
 if TYPE_CHECKING:

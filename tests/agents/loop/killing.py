@@ -16,7 +16,7 @@ import pytest
 from run_sessions import at_home, go_on, sit
 from whole import IS_WHOLE
 
-from agents.loop.journal import KEYS, NAME, Journal
+from agents.loop.record.journal import KEYS, NAME, Journal
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -16,16 +16,17 @@ from shared_docs import share_docs
 from agents.blender.tools import material_preview, previews, uv_preview
 from agents.blender.tools.files import LOAD
 from agents.blender.tools.scene_state import TOOL as SCENE_STATE
-from agents.loop import answer_source, evidence
-from agents.loop.journal import NAME, Row, read_rows
+from agents.loop import answer_source
 from agents.loop.options import Options, RunLimits
+from agents.loop.record.journal import NAME, Row, read_rows
+from agents.loop.review import evidence
 from agents.loop.session import Ended, RunSession, Stop, begin, resume
-from simworlds.llm.providers import connect
+from simworlds.llm.apis.providers import connect
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from agents.loop.events import Event
+    from agents.loop.record.events import Event
 
 DOCS = "docs.url"
 """The file in a home that says where its documentation is served, if it is."""

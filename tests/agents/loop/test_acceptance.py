@@ -9,14 +9,14 @@ import pytest
 from bs4 import BeautifulSoup
 from team import ACCEPT, FINE, Team, last_words, reply, turn_of, whose
 
-from agents.loop.acceptance import AcceptanceRecord
 from agents.loop.answer_source import TRANSCRIPTS, transcripts
+from agents.loop.review.acceptance import AcceptanceRecord
 from agents.plan.acceptance import AcceptanceAnswer, faults_of_answers
 from agents.plan.tactical import FinalReview, Review, TacticalPlan
 from agents.views.report.page import write_report
 from simworlds.llm.errors import Misfit
+from simworlds.llm.records.transcript import read_folder
 from simworlds.llm.structured import fits, read
-from simworlds.llm.transcript import read_folder
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -11,7 +11,7 @@ from bs4 import BeautifulSoup
 from domino_run import dominoes
 from sample_runs import MODEL, Tape, write
 
-from agents.loop.reducer import run_state_after
+from agents.loop.record.reducer import run_state_after
 from agents.views.cost_table import costs_by_role
 from agents.views.report.page import write_report
 from agents.views.rich_views import run_summary

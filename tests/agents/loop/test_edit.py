@@ -15,9 +15,9 @@ from team import DONE, Team, call, reply, run, whose, words_of
 
 from agents.blender.blender_sessions import SessionSetup
 from agents.loop.errors import Unusable
-from agents.loop.events import read_event
-from agents.loop.reducer import read_run_state
-from agents.loop.tool_client import ToolClient
+from agents.loop.record.events import read_event
+from agents.loop.record.reducer import read_run_state
+from agents.loop.running.tool_client import ToolClient
 from agents.views.event_lines import format_event
 from simworlds.sandbox.confined_command import best_sandbox
 

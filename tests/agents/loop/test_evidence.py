@@ -11,16 +11,16 @@ from small_plan import small_plan
 
 from agents.loop.algorithm import stages_of
 from agents.loop.edit.comparison import photometric_loss
-from agents.loop.evidence import evidence, motion_sheets
 from agents.loop.options import Options
+from agents.loop.review.evidence import evidence, motion_sheets
+from agents.loop.running.tool_client import ToolOutcome
 from agents.loop.task import RunTask
-from agents.loop.tool_client import ToolOutcome
 from agents.plan.motion import MotionPhase
 from agents.plan.scene import ScenePlan
 from bench.blenderbench import photometric
 
 if TYPE_CHECKING:
-    from agents.loop.run import Run
+    from agents.loop.running.run import Run
     from agents.plan.part import Stage
 
 

@@ -12,13 +12,13 @@ import teams
 from run_sessions import answered, asked_of, go_on, seat, sit
 from team import DONE, NEEDS_FIX, Team, call, run, whose
 
-from agents.loop import draft, film_time
-from agents.loop.events import SceneRendered
-from agents.loop.film_settings import FilmSettings, FrameTime, TimedFrame, fitted
-from agents.loop.journal import Journal
+from agents.loop.film import allotted_time, draft
+from agents.loop.film.fitting import FilmSettings, FrameTime, TimedFrame, fitted
+from agents.loop.film.rendering import quality_of
 from agents.loop.options import RunLimits
-from agents.loop.reducer import read_run_state
-from agents.loop.rendering import quality_of
+from agents.loop.record.events import SceneRendered
+from agents.loop.record.journal import Journal
+from agents.loop.record.reducer import read_run_state
 from agents.plan.scene import RenderSettings
 from agents.views.report.page import write_report
 
@@ -133,7 +133,7 @@ class Limited:
     journal: Journal | None = None
 
     def minutes(self, ahead: float = 0.0, share: float = 1.0) -> float:
-        return film_time.minutes_of(self, ahead, share)  # type: ignore[arg-type]
+        return allotted_time.minutes_of(self, ahead, share)  # type: ignore[arg-type]
 
 
 def test_a_film_has_what_the_limit_leaves_but_for_the_review() -> None:
@@ -184,7 +184,7 @@ def journal(tmp_path: Path) -> Iterator[Journal]:
 def test_a_film_is_not_mended_where_the_limit_leaves_too_little_and_that_stays_so(journal: Journal) -> None:
     def is_time(left: float | None, number: int = 1) -> bool:
         run = Limited(RunLimits(max_minutes=85), left, journal=journal)
-        return film_time.is_time_to_mend(run, number)  # type: ignore[arg-type]
+        return allotted_time.is_time_to_mend(run, number)  # type: ignore[arg-type]
 
     for number in (1, 2):
         journal.note(SceneRendered(round=number, kind="animation", seconds=1000.0))

@@ -9,8 +9,15 @@ from typing import TYPE_CHECKING
 import pytest
 
 from agents.loop.errors import NoRun
-from agents.loop.events import RunBegan, SceneRestored, SessionBegan, StageMoved, ToolAnswered, types_of
-from agents.loop.journal import Journal
+from agents.loop.record.events import (
+    RunBegan,
+    SceneRestored,
+    SessionBegan,
+    StageMoved,
+    ToolAnswered,
+    types_of,
+)
+from agents.loop.record.journal import Journal
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -13,9 +13,9 @@ from domino_run import domino_plan, dominoes, finding
 from hostile_text import HOSTILE, steering
 from sample_runs import Tape
 
-from agents.loop.events import read_event
-from agents.loop.reducer import after, run_state_after
-from agents.loop.run_state import RunState
+from agents.loop.record.events import read_event
+from agents.loop.record.reducer import after, run_state_after
+from agents.loop.record.run_state import RunState
 from agents.views.live_view import RunLog, RunScreen, RunView, make_view
 from agents.views.now import Now, ToolProgress
 from agents.views.rich_views import run_in_progress, run_row, run_summary, runs_table

@@ -8,7 +8,7 @@ import pytest
 from live_session import LiveSession
 
 from agents.blender.tools.files import LOAD
-from agents.loop.planned_settings import code_of
+from agents.loop.film.planned_settings import code_of
 from agents.plan.scene import RenderSettings
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import teams
 from run_sessions import scenes
 from team import ABORT, DONE, FINE, REPLAN, RETRY, Team, call, last_words, run, turn_of, whose, words_of
 
-from agents.loop.withdrawals import as_soft
+from agents.loop.review.withdrawals import as_soft
 from agents.plan.tactical import Withdrawal
 from agents.protocol.findings import Finding
 

@@ -13,7 +13,7 @@ from run_sessions import answered, at_home
 from running import run_here
 from team import ABORT, Team
 
-from agents.loop.journal import NAME
+from agents.loop.record.journal import NAME
 from simworlds.cli import main
 from simworlds.own_command import own_command
 

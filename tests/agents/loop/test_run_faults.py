@@ -14,9 +14,9 @@ from fake_messages_api import Reply, Status
 from run_sessions import MESSAGES, answered, asked_of, go_on, seat, sit
 from team import ABORT, DONE, Team, calls, last_words, reply, run, turn_of, use, whose, words_of
 
-from agents.loop import run as run_module
 from agents.loop.errors import Unusable
 from agents.loop.options import RunLimits
+from agents.loop.running import run as run_module
 from agents.roles.base import RoleContext
 from simworlds.llm.context import ContextLimits as Kept
 

@@ -15,9 +15,9 @@ from team import ABORT, DONE, Team, call, reply, run, texts, whose
 from whole import IS_WHOLE
 
 from agents.loop.errors import NoRun, Unusable
-from agents.loop.journal import NAME, read_rows
 from agents.loop.leaving import LATEST
 from agents.loop.options import RunLimits
+from agents.loop.record.journal import NAME, read_rows
 from simworlds.own_command import own_command
 
 if TYPE_CHECKING:

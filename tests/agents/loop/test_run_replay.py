@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from run_sessions import at_home, go_on, scenes, seat, sit
 
-from agents.loop import film_time
 from agents.loop.demos import replay_options
 from agents.loop.errors import NoRun
-from agents.loop.journal import NAME, read_rows
+from agents.loop.film import allotted_time
 from agents.loop.options import RunLimits
+from agents.loop.record.journal import NAME, read_rows
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -35,7 +35,7 @@ def alone(home: Path) -> Iterator[None]:
 def replayed(home: Path, mended: Played, tmp_path_factory: pytest.TempPathFactory) -> Played:
     """On a machine of more cores, within other limits."""
     with at_home(home), pytest.MonkeyPatch.context() as patch:
-        patch.setattr(type(film_time.SYSTEM), "cores", lambda _: 64)
+        patch.setattr(type(allotted_time.SYSTEM), "cores", lambda _: 64)
         limits = seat(RunLimits(max_minutes=600, render_minutes=7))
         return sit(tmp_path_factory.mktemp("replayed") / "run", limits, **replay_options(mended.root))
 

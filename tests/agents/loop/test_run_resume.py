@@ -18,9 +18,9 @@ from processes import becomes, of_run
 from run_sessions import MESSAGES, answered, go_on, scenes, seat, sit
 from team import ABORT, DONE, NEEDS_FIX, Team, call, run
 
-from agents.loop import journal as journal_module
 from agents.loop.errors import NoRun, RunError
-from agents.loop.journal import NAME, read_rows
+from agents.loop.record import journal as journal_module
+from agents.loop.record.journal import NAME, read_rows
 from simworlds.folder_lock import locked
 
 if TYPE_CHECKING:

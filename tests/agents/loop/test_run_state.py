@@ -9,10 +9,10 @@ import pytest
 from domino_run import dominoes, finding
 from sample_runs import Tape, write
 
-from agents.loop import events
-from agents.loop.events import read_event
-from agents.loop.reducer import after, read_run_state, run_state_after
-from agents.loop.run_state import ModelCall, RunState, ToolCall
+from agents.loop.record import events
+from agents.loop.record.events import read_event
+from agents.loop.record.reducer import after, read_run_state, run_state_after
+from agents.loop.record.run_state import ModelCall, RunState, ToolCall
 from agents.views.rich_views import run_row
 from simworlds.llm.messages import Usage
 

@@ -11,8 +11,8 @@ from fake_messages_api import Reply
 from run_sessions import answered, go_on, scenes, seat, sit
 from team import ABORT, DONE, Team, run, words_of
 
-from agents.loop import interruptible
-from agents.loop.journal import NAME, read_rows
+from agents.loop.record.journal import NAME, read_rows
+from agents.loop.running import interruptible
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from agents.loop.telling_frames import MeasuredMotion, telling_frames
+from agents.loop.film.telling_frames import MeasuredMotion, telling_frames
 from agents.plan.motion import MotionPhase
 
 

@@ -12,10 +12,10 @@ from fake_messages_api import FakeMessagesAPI, Reply
 from PIL import Image, PngImagePlugin
 
 from bench.judge.providers import JudgeIdentity, JudgeProvider
-from simworlds.llm.attempts import Settings
-from simworlds.llm.claude import Claude
-from simworlds.llm.openai_chat import OpenAIChat
-from simworlds.llm.retries import RetryPolicy
+from simworlds.llm.apis.attempts import Settings
+from simworlds.llm.apis.claude import Claude
+from simworlds.llm.apis.openai_chat import OpenAIChat
+from simworlds.llm.apis.retries import RetryPolicy
 from simworlds.llm.spending import Spending
 
 if TYPE_CHECKING:

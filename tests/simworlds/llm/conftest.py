@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from fake_messages_api import FakeMessagesAPI
 
-from simworlds.llm.attempts import Settings
-from simworlds.llm.claude import Claude
+from simworlds.llm.apis.attempts import Settings
+from simworlds.llm.apis.claude import Claude
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from simworlds.llm.retries import Retry
+    from simworlds.llm.apis.retries import Retry
 
 
 class Told:

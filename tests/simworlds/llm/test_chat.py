@@ -13,14 +13,14 @@ from asks import LOOK, ask, png
 from fake_chat_api import DIALECTS, Called, FakeChatAPI, Said
 from fake_messages_api import Drop, Raw, Status, Truncate
 
-from simworlds.llm.attempts import Settings
-from simworlds.llm.chat_stream import ChatAnswer
+from simworlds.llm.apis.attempts import Settings
+from simworlds.llm.apis.chat_stream import ChatAnswer
+from simworlds.llm.apis.claude_stream import BrokenStream
+from simworlds.llm.apis.openai_chat import OpenAIChat
+from simworlds.llm.apis.retries import RetryPolicy
 from simworlds.llm.errors import CutShort, Declined, Rejected, TooLong, Unreachable
 from simworlds.llm.messages import Kept, Picture, Text, ToolResult, ToolUse, Usage, user
-from simworlds.llm.openai_chat import OpenAIChat
 from simworlds.llm.prices import Price, Prices
-from simworlds.llm.retries import RetryPolicy
-from simworlds.llm.stream import BrokenStream
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

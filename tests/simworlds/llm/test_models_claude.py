@@ -10,8 +10,8 @@ import pytest
 from asks import LOOK, MESSAGES, OPUS, ask, png
 from fake_messages_api import Reply, Stall, Status
 
-from simworlds.llm.attempts import Settings
-from simworlds.llm.claude import Claude
+from simworlds.llm.apis.attempts import Settings
+from simworlds.llm.apis.claude import Claude
 from simworlds.llm.errors import CutShort, Declined, Rejected, TooLong
 from simworlds.llm.messages import Kept, Message, Picture, Text, Tool, ToolResult, ToolUse, Usage, user
 from simworlds.llm.prices import Price, Prices

@@ -30,11 +30,11 @@ from fake_messages_api import (
 )
 from places import REPO
 
-from simworlds.llm.attempts import Settings
-from simworlds.llm.claude import Claude
+from simworlds.llm.apis.attempts import Settings
+from simworlds.llm.apis.claude import Claude
+from simworlds.llm.apis.retries import RetryPolicy
 from simworlds.llm.errors import ModelError, OverBudget, Rejected, Unreachable
 from simworlds.llm.messages import Kept, Text, ToolUse, Usage
-from simworlds.llm.retries import RetryPolicy
 from simworlds.llm.spending import Metered, Spending
 
 CONTENT = (
@@ -390,8 +390,8 @@ ASKING = """\
 import sys
 sys.path[:0] = [{tests!r}, {repository!r}]
 from asks import ask
-from simworlds.llm.attempts import Settings
-from simworlds.llm.claude import Claude
+from simworlds.llm.apis.attempts import Settings
+from simworlds.llm.apis.claude import Claude
 Claude(Settings("key", {address!r})).answer(ask())
 """
 

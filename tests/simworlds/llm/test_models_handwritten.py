@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from simworlds.llm.errors import CutShort, Declined, Drifted, UnreadableRecord, raise_for_stop
 from simworlds.llm.messages import Message, Text, ToolResult, ToolUse, Turn, user
-from simworlds.llm.recorded import Recorded
-from simworlds.llm.transcript import read_turn, write_turn
+from simworlds.llm.records.recorded import Recorded
+from simworlds.llm.records.transcript import read_turn, write_turn
 
 if TYPE_CHECKING:
     from pathlib import Path

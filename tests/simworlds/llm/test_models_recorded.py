@@ -12,10 +12,10 @@ import pytest
 from asks import Scripted, ask, png
 from fake_messages_api import Reply
 
-from simworlds.llm.canonical import alike, form_of, normal
 from simworlds.llm.errors import CutShort, Declined, Drifted, Stopped, UnreadableRecord
 from simworlds.llm.messages import Kept, Message, Picture, Text, ToolResult, ToolUse, Turn, Usage, user
-from simworlds.llm.recorded import Recorded, Recording
+from simworlds.llm.records.canonical import alike, form_of, normal
+from simworlds.llm.records.recorded import Recorded, Recording
 
 if TYPE_CHECKING:
     from pathlib import Path

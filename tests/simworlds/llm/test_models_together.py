@@ -11,7 +11,7 @@ from pydantic import BaseModel
 
 from simworlds.llm.context import ContextLimits, fit
 from simworlds.llm.messages import Kept, Picture, Text, ToolResult, user
-from simworlds.llm.recorded import Recorded, Recording
+from simworlds.llm.records.recorded import Recorded, Recording
 from simworlds.llm.spending import Metered, Spending
 from simworlds.llm.structured import ask_for, fits
 

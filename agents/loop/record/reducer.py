@@ -11,9 +11,9 @@ from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING, Any
 
-from agents.loop import events
-from agents.loop.journal import NAME, read_rows
-from agents.loop.run_state import Attempt, ModelCall, Rendering, RunState, StageRun, Step, ToolCall
+from agents.loop.record import events
+from agents.loop.record.journal import NAME, read_rows
+from agents.loop.record.run_state import Attempt, ModelCall, Rendering, RunState, StageRun, Step, ToolCall
 from simworlds.llm.messages import Text
 from simworlds.llm.spending import SpendingRow
 
@@ -211,7 +211,7 @@ def _begin(state: RunState, step: Step) -> RunState:
 
 
 def _pictures(text: str) -> int:
-    """How many pictures there are in what a model was told, as ``simworlds.llm.canonical`` writes it."""
+    """How many pictures there are in what a model was told, as ``simworlds.llm.records.canonical`` writes it."""
     return len(_PICTURE.findall(text))
 
 

@@ -8,19 +8,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from agents.loop.errors import NotRendered
-from agents.loop.events import Drafted, FilmFitted, SceneRendered
-from agents.loop.film_settings import FilmSettings, FrameTime, TimedFrame, fitted
-from agents.loop.film_time import minutes_of
-from agents.loop.pictures import link, pictures_of
-from agents.loop.run import RENDER, RUNNER
-from agents.loop.telling_frames import telling_frames
+from agents.loop.film.allotted_time import minutes_of
+from agents.loop.film.fitting import FilmSettings, FrameTime, TimedFrame, fitted
+from agents.loop.film.pictures import link, pictures_of
+from agents.loop.film.telling_frames import telling_frames
+from agents.loop.record.events import Drafted, FilmFitted, SceneRendered
+from agents.loop.running.run import RENDER, RUNNER
 from agents.roles import coder
 from simworlds.llm.messages import Picture, Text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from agents.loop.run import Run
+    from agents.loop.running.run import Run
     from agents.plan.scene import RenderSettings
     from simworlds.llm.messages import Block
 

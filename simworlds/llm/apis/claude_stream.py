@@ -15,8 +15,8 @@ import httpx2
 from pydantic import BaseModel, NonNegativeInt
 
 from simworlds.llm import tokens
+from simworlds.llm.apis.tool_input import read_input
 from simworlds.llm.messages import Block, Kept, Text, ToolUse, Turn, Usage
-from simworlds.llm.tool_input import read_input
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 from agents.loop.edit.baseline import format_new, told_since
 from agents.loop.edit.declared_mechanisms import undeclared
-from agents.loop.events import Reviewed, Verified
-from agents.loop.evidence import evidence, moves
-from agents.loop.run import VERIFIER, VERIFY
-from agents.loop.withdrawals import as_soft
+from agents.loop.record.events import Reviewed, Verified
+from agents.loop.review.evidence import evidence, moves
+from agents.loop.review.withdrawals import as_soft
+from agents.loop.running.run import VERIFIER, VERIFY
 from agents.plan.tactical import Review
 from agents.protocol.findings import Finding
 from simworlds.llm.errors import Declined, Misfit
@@ -19,7 +19,7 @@ from simworlds.llm.errors import Declined, Misfit
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from agents.loop.run import Run
+    from agents.loop.running.run import Run
     from agents.loop.task import RunTask
     from agents.plan.part import Stage
     from agents.plan.tactical import TacticalPlan, Withdrawal

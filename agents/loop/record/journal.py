@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, TypeGuard, TypeVar
 from pydantic import ValidationError
 
 from agents.loop.errors import NoRun, RunError
-from agents.loop.events import Event, read_event, types_of
+from agents.loop.record.events import Event, read_event, types_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping

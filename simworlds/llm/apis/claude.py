@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import httpx2
 from anthropic import AnthropicError, APIStatusError
 
-from simworlds.llm.anthropic_client import Credentials, anthropic_client
-from simworlds.llm.attempts import CONNECT_SECONDS, Attempts, Fault, Settings
+from simworlds.llm.apis.anthropic_client import Credentials, anthropic_client
+from simworlds.llm.apis.attempts import CONNECT_SECONDS, Attempts, Fault, Settings
+from simworlds.llm.apis.claude_request import params_of
+from simworlds.llm.apis.claude_stream import BrokenStream, LimitedBytes, StreamedAnswer
+from simworlds.llm.apis.retries import is_passing, one_line, requested_pause
 from simworlds.llm.errors import Rejected
-from simworlds.llm.request import params_of
-from simworlds.llm.retries import is_passing, one_line, requested_pause
-from simworlds.llm.stream import BrokenStream, LimitedBytes, StreamedAnswer
 
 if TYPE_CHECKING:
     import random
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
     from anthropic import Anthropic
 
+    from simworlds.llm.apis.retries import Retry
     from simworlds.llm.messages import Ask, Turn, Usage
-    from simworlds.llm.retries import Retry
 
 _ADVICE = {
     401: " Check the key (ANTHROPIC_API_KEY).",

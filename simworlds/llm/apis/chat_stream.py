@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel, Field, NonNegativeInt, ValidationError
 
 from simworlds.llm import tokens
+from simworlds.llm.apis.claude_stream import BrokenStream
+from simworlds.llm.apis.tool_input import read_input
 from simworlds.llm.messages import Block, Text, ToolUse, Turn, Usage
-from simworlds.llm.stream import BrokenStream
-from simworlds.llm.tool_input import read_input
 from simworlds.schemas.faults import first_fault
 
 if TYPE_CHECKING:

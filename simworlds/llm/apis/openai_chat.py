@@ -13,20 +13,20 @@ from typing import TYPE_CHECKING, Any
 
 import httpx2
 
-from simworlds.llm.attempts import CONNECT_SECONDS, Attempts, Fault, Settings
-from simworlds.llm.chat_request import chat_params_of
-from simworlds.llm.chat_stream import ChatAnswer
+from simworlds.llm.apis.attempts import CONNECT_SECONDS, Attempts, Fault, Settings
+from simworlds.llm.apis.chat_request import chat_params_of
+from simworlds.llm.apis.chat_stream import ChatAnswer
+from simworlds.llm.apis.claude_stream import BrokenStream, LimitedBytes
+from simworlds.llm.apis.retries import is_passing, one_line, requested_pause
 from simworlds.llm.errors import Rejected
-from simworlds.llm.retries import is_passing, one_line, requested_pause
-from simworlds.llm.stream import BrokenStream, LimitedBytes
 
 if TYPE_CHECKING:
     import random
     from collections.abc import Callable, Generator
     from types import ModuleType
 
+    from simworlds.llm.apis.retries import Retry
     from simworlds.llm.messages import Ask, Turn, Usage
-    from simworlds.llm.retries import Retry
 
 NO_PACKAGE = "The openai package is not installed. Install it with: pip install 'simworlds[openai]'"
 _ADVICE = {

@@ -27,10 +27,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel, ValidationError
 
-from simworlds.llm.canonical import Form, alike, form_of
 from simworlds.llm.errors import Drifted, Stopped, UnreadableRecord, raise_for_stop
 from simworlds.llm.messages import Text, ToolResult, Turn
-from simworlds.llm.transcript import WrittenTurn, read_folder
+from simworlds.llm.records.canonical import Form, alike, form_of
+from simworlds.llm.records.transcript import WrittenTurn, read_folder
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.loop.events import MendWeighed, PlanMade, RoomTold, SceneRendered
-from agents.loop.run_state import DEFAULT_RENDER_MINUTES
+from agents.loop.record.events import MendWeighed, PlanMade, RoomTold, SceneRendered
+from agents.loop.record.run_state import DEFAULT_RENDER_MINUTES
 from simworlds.counting import counted
 from simworlds.operating_system import SYSTEM
 
 if TYPE_CHECKING:
-    from agents.loop.run import Run
+    from agents.loop.running.run import Run
 
 _REVIEW_SECONDS = 180.0  # for what follows a film: its review, and saving the result
 _REVIEW_SHARE = 0.1  # of the session's limit, which that may take at most

@@ -255,7 +255,7 @@ class RolledBack(Event):
 
 
 class ModelAsked(Event):
-    """A role asked its model: ``parts`` are digests of what it was told, see ``simworlds.llm.recorded``."""
+    """A role asked its model: ``parts`` are digests of what it was told, see ``simworlds.llm.records.recorded``."""
 
     type: Literal["model.asked"] = "model.asked"
     model: Str = ""

@@ -13,10 +13,10 @@ from contextlib import closing
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
+from simworlds.llm.apis.retries import Retry, RetryPolicy
 from simworlds.llm.errors import ModelError, Rejected, TooLong, Unreachable, raise_for_stop
 from simworlds.llm.messages import Usage
 from simworlds.llm.prices import Prices
-from simworlds.llm.retries import Retry, RetryPolicy
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterator

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Literal, Protocol, get_args
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from simworlds.llm.attempts import Settings
+    from simworlds.llm.apis.attempts import Settings
+    from simworlds.llm.apis.retries import Retry
     from simworlds.llm.messages import Ask, Turn
-    from simworlds.llm.retries import Retry
 
 ProviderName = Literal["anthropic", "openai"]
 PROVIDERS: tuple[ProviderName, ...] = get_args(ProviderName)
@@ -49,9 +49,9 @@ def connect(
     package.
     """
     if provider == "openai":
-        from simworlds.llm.openai_chat import OpenAIChat  # noqa: PLC0415
+        from simworlds.llm.apis.openai_chat import OpenAIChat  # noqa: PLC0415
 
         return OpenAIChat(settings, tell, pause=pause)
-    from simworlds.llm.claude import Claude  # noqa: PLC0415
+    from simworlds.llm.apis.claude import Claude  # noqa: PLC0415
 
     return Claude(settings, tell, pause=pause)

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from agents.loop.draft import asked_of, draft, draft_again, film_frames, settled_film
 from agents.loop.edit.comparison import compared
 from agents.loop.errors import NotRendered
-from agents.loop.events import FilmDecided, FinalReviewed, SceneRendered
-from agents.loop.film_time import is_time_to_mend, minutes_of
-from agents.loop.judging import note_verdict, verify
-from agents.loop.pictures import link, pictures_of
-from agents.loop.run import RENDER, RUNNER
-from agents.loop.withdrawals import format_withdrawn
+from agents.loop.film.allotted_time import is_time_to_mend, minutes_of
+from agents.loop.film.draft import asked_of, draft, draft_again, film_frames, settled_film
+from agents.loop.film.pictures import link, pictures_of
+from agents.loop.record.events import FilmDecided, FinalReviewed, SceneRendered
+from agents.loop.review.verdicts import note_verdict, verify
+from agents.loop.review.withdrawals import format_withdrawn
+from agents.loop.running.run import RENDER, RUNNER
 from agents.plan.tactical import FilmDecision, FinalReview
 from agents.roles.coder import Coder
 from agents.roles.final_reviewer import final_review
@@ -24,8 +24,8 @@ from simworlds.llm.messages import Picture, Text
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from agents.loop.film_settings import FilmSettings
-    from agents.loop.run import Run
+    from agents.loop.film.fitting import FilmSettings
+    from agents.loop.running.run import Run
     from agents.loop.task import RunTask
     from agents.plan.scene import RenderSettings
     from agents.roles.planner import Planner

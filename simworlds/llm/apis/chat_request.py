@@ -6,8 +6,8 @@ import base64
 import json
 from typing import TYPE_CHECKING, Any, cast
 
+from simworlds.llm.apis.claude_request import clean
 from simworlds.llm.messages import Picture, Text, ToolResult, ToolUse
-from simworlds.llm.request import clean
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

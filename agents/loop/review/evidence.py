@@ -6,15 +6,15 @@ import itertools
 from typing import TYPE_CHECKING, Any
 
 from agents.loop.edit.comparison import compared
-from agents.loop.run import RENDER, RUNNER
-from agents.loop.telling_frames import MeasuredMotion, telling_frames
+from agents.loop.film.telling_frames import MeasuredMotion, telling_frames
+from agents.loop.running.run import RENDER, RUNNER
 from agents.plan.part import STAGES
 from simworlds.llm.messages import Picture, Text
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from agents.loop.run import Run
+    from agents.loop.running.run import Run
     from agents.loop.task import RunTask
     from agents.plan.motion import MotionPhase
     from agents.plan.part import Stage

@@ -9,14 +9,22 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from simworlds.llm.records.transcript import MODEL as HANDWRITTEN
 from simworlds.llm.spending import SpendingRow
-from simworlds.llm.transcript import MODEL as HANDWRITTEN
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from datetime import datetime
 
-    from agents.loop.events import Decided, Drafted, Edited, FilmDecided, FilmFitted, RunEnded, Verified
+    from agents.loop.record.events import (
+        Decided,
+        Drafted,
+        Edited,
+        FilmDecided,
+        FilmFitted,
+        RunEnded,
+        Verified,
+    )
     from agents.plan.edit import EditPlan
     from agents.plan.scene import ScenePlan
     from agents.plan.tactical import FinalReview, Review, TacticalPlan

@@ -19,10 +19,11 @@ from typing import TYPE_CHECKING, Any
 from agents.blender.saved_files import move_saved
 from agents.blender.tool_catalogue import BY_NAME
 from agents.blender.tools.scene_order import words_of
-from agents.loop.acceptance import AcceptanceRecord
 from agents.loop.edit.baseline import told_since
 from agents.loop.errors import NoRun, NotSaved, RunError, Stopping
-from agents.loop.events import (
+from agents.loop.film.planned_settings import code_of
+from agents.loop.film.telling_frames import MeasuredMotion
+from agents.loop.record.events import (
     AttemptBegan,
     AttemptEnded,
     PicturePart,
@@ -33,11 +34,10 @@ from agents.loop.events import (
     ToolAnswered,
     ToolCalled,
 )
-from agents.loop.interruptible import Interruptible
-from agents.loop.planned_settings import code_of
-from agents.loop.telling_frames import MeasuredMotion
-from agents.loop.tool_client import ToolOutcome
-from agents.loop.withdrawals import as_soft
+from agents.loop.review.acceptance import AcceptanceRecord
+from agents.loop.review.withdrawals import as_soft
+from agents.loop.running.interruptible import Interruptible
+from agents.loop.running.tool_client import ToolOutcome
 from agents.roles import coder, planner, reviewer
 from agents.roles.base import RoleContext
 from simworlds.counting import format_list
@@ -48,10 +48,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
-    from agents.loop.journal import Journal
     from agents.loop.options import Options, RunLimits
+    from agents.loop.record.journal import Journal
+    from agents.loop.running.tool_client import ToolClient
     from agents.loop.task import RunTask
-    from agents.loop.tool_client import ToolClient
     from agents.plan.part import Stage
     from agents.plan.tactical import Withdrawal
     from agents.roles.base import WorkResult

@@ -1,0 +1,1 @@
+"""The APIs that models are reached by: requests, streamed answers, and asking again."""
