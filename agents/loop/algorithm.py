@@ -10,8 +10,7 @@ from agents.loop.errors import NotSaved
 from agents.loop.film.allotted_time import room_for_film
 from agents.loop.film.rendering import LastStage
 from agents.loop.record.events import PlanMade, StageMoved
-from agents.loop.record.journal import PLAN_NAME
-from agents.loop.running.run import START, plan_file
+from agents.loop.running.position import START
 from agents.loop.stage import StageLoop
 from agents.loop.task import RunTask
 from agents.plan.part import STAGES
@@ -37,7 +36,7 @@ def make(run: Run) -> RenderResult:
     run.save("modeling", START)
     planner = Planner(run.context)
     plan = planner.strategic(prompt_with_assets(run), room_for_film(run))
-    run.write(PLAN_NAME, plan_file(plan))
+    run.files.write_plan(plan)
     run.journal.note(PlanMade(plan=plan))
     staged = run.options.stages
     told = format_plan(plan, run.options.prompt)
@@ -61,7 +60,7 @@ def build(run: Run, planner: Planner, task: RunTask, wanted: Sequence[Stage]) ->
                 run.deliver(stage)
         path = f"checkpoints/{stage}.blend"
         run.journal.note(StageMoved(type="stage.closed", stage=stage, attempts=attempts, file=path))
-        run.closed, run.is_changed = stage, False
+        run.position.close(stage)
         last = stage
     return last
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.loop.running.run import RUNNER
+from agents.loop.running.run_tools import RUNNER
 
 if TYPE_CHECKING:
     from agents.loop.running.run import Run
@@ -25,5 +25,5 @@ def prompt_with_assets(run: Run) -> str:
     prompt = run.options.prompt
     if run.options.assets is None:
         return prompt
-    found = run.use(RUNNER, "modeling", ASSETS, {"previews": False})
+    found = run.tools.use(RUNNER, "modeling", ASSETS, {"previews": False})
     return prompt if found.failed else _TOLD.format(prompt=prompt, tool=ASSETS, found=found.text)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from agents.loop.errors import RunError
 from agents.loop.review.evidence import still
 from agents.loop.review.verdicts import verify
-from agents.loop.running.run import RENDER, RUNNER, START
+from agents.loop.running.position import START
+from agents.loop.running.run_tools import RENDER, RUNNER
 from simworlds.sandbox.errors import BlenderError
 
 if TYPE_CHECKING:
@@ -27,20 +28,20 @@ def leave(run: Run) -> None:
 
     Nothing of it is journalled: a session that goes on takes the run up where it stopped.
     """
-    task, stage = run.task, run.stage
+    task, position, stage = run.task, run.position, run.position.stage
     if task is None or stage is None:
         return
-    run.is_leaving = True
+    run.tools.is_leaving = True
     with suppress(RunError, BlenderError, OSError):
-        if run.is_changed and verify(run, stage, task).ok:
+        if position.is_changed and verify(run, stage, task).ok:
             run.deliver(stage)
-        elif run.is_changed and run.closed != START:
-            run.load(stage, run.checkpoints / f"{run.closed}.blend")
-        seconds = max(1.0, run.leaving_seconds * _SHOWING)
-        shown = _shown(run.use(RUNNER, stage, RENDER, still("latest", None, seconds=seconds)))
-        shown = shown or _shown(run.use(RUNNER, stage, _LAYOUT, {}))
+        elif position.is_changed and position.closed != START:
+            run.load(stage, run.files.checkpoint(position.closed))
+        seconds = max(1.0, run.deadline.seconds_kept_back * _SHOWING)
+        shown = _shown(run.tools.use(RUNNER, stage, RENDER, still("latest", None, seconds=seconds)))
+        shown = shown or _shown(run.tools.use(RUNNER, stage, _LAYOUT, {}))
         if shown:
-            (run.root / LATEST).write_bytes(shown)
+            (run.files.root / LATEST).write_bytes(shown)
             return
     _LOG.info("The scene could not be shown as the run stopped.")
 

@@ -17,12 +17,17 @@ from agents.loop.answer_source import LiveOptions, check_model, make_model, repe
 from agents.loop.edit.edit_mode import edit
 from agents.loop.edit.inputs import check_inputs
 from agents.loop.errors import Aborted, NoRun, Stopping, Unusable
+from agents.loop.film.film_limits import FilmLimits
 from agents.loop.leaving import LATEST, leave
 from agents.loop.options import BEFORE_DRAFTS, Options, RunLimits
 from agents.loop.record.events import RunBegan, RunEnded, SessionBegan
 from agents.loop.record.journal import NAME, Journal
 from agents.loop.record.reducer import read_run_state
-from agents.loop.running.run import SCENE, Run
+from agents.loop.running.deadline import Deadline
+from agents.loop.running.position import Position
+from agents.loop.running.run import Run
+from agents.loop.running.run_files import SCENE, RunFiles
+from agents.loop.running.run_tools import RunTools
 from agents.loop.running.tool_client import ToolClient
 from agents.roles.names import ROLES
 from simworlds.errors import UserError
@@ -215,13 +220,14 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
         )
     )
     repeat_told(options, journal)
-    (root / "checkpoints").mkdir(exist_ok=True)
+    files = RunFiles(root)
+    files.checkpoints.mkdir(exist_ok=True)
     setup = SessionSetup(
         best_sandbox(options.sandbox),
         version=options.blender,
         blender_exe=options.blender_exe,
-        read=(root / "checkpoints", *_readable(options)),
-        run=root / "blender",
+        read=(files.checkpoints, *_readable(options)),
+        run=files.of_blender,
         assets=options.assets,
         tell=_LOG.info,
     )
@@ -230,10 +236,20 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
         pause = stop.event.wait  # asked to stop, nobody waits for an overloaded server
         live = LiveOptions(Spending(max_cost, options.prices), _retrying(session), pause, stack)
         model = make_model(root, options, journal, live)
-        tools = stack.enter_context(ToolClient(setup, _same_blender(options), session.watcher.progress))
-        stop.tools = tools
-        saying = session.watcher.saying
-        run = Run(root, options, session.limits, journal, tools, model, saying, stop.event)
+        client = stack.enter_context(ToolClient(setup, _same_blender(options), session.watcher.progress))
+        stop.tools = client
+        deadline, position = Deadline(stop.event, limits.max_minutes), Position()
+        run = Run(
+            options,
+            FilmLimits.of(options, limits, journal),
+            deadline,
+            files,
+            journal,
+            RunTools(client, journal, files, position, deadline),
+            model,
+            session.watcher.saying,
+            position,
+        )
         try:
             rendering = (edit if options.mode == "edit" else make)(run)
         except (Stopping, OverBudget):
@@ -242,7 +258,7 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
             raise
         finally:
             stop.tools = None
-    return Ended("done", "", root / SCENE, rendering.path)
+    return Ended("done", "", files.scene, rendering.path)
 
 
 def _models(options: Options) -> dict[str, str]:

@@ -59,7 +59,7 @@ class StageLoop:
         Raises Aborted, with the scene as it was before the stage; NotSaved; ModelError.
         """
         self._run.journal.note(StageMoved(type="stage.began", stage=self._stage))
-        self._run.stage = self._stage
+        self._run.position.stage = self._stage
         attempt = 1
         tactic, worked = self._fresh(attempt, self._begin)
         while True:
@@ -108,8 +108,8 @@ class StageLoop:
     ) -> tuple[TacticalPlan, WorkResult]:
         """A tactical plan, and the first attempt to realise it. A decision to replan may have brought the plan."""
         run, stage = self._run, self._stage
-        run.attempt = attempt
-        lost = run.unused_since() if self._task.edit else ""
+        run.position.attempt = attempt
+        lost = run.unused.news() if self._task.edit else ""
         gone = format_withdrawn(run.withdrawn, to_builder=True)
         state = "\n\n".join(filter(None, (run.time_left(stage, attempt), gone, lost, run.state(stage))))
         tactic = replan.tactic if replan else None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.loop.running.run import RUNNER
+from agents.loop.running.run_tools import RUNNER
 
 if TYPE_CHECKING:
     from agents.loop.running.run import Run
@@ -40,7 +40,7 @@ def topic_page(run: Run, stage: Stage, task: RunTask) -> str:
     topic = topic_of(stage, task) if run.options.stages else ""
     if not topic:
         return ""
-    outcome = run.use(RUNNER, stage, _DOCS, {"query": topic, "max_tokens": _TOKENS})
+    outcome = run.tools.use(RUNNER, stage, _DOCS, {"query": topic, "max_tokens": _TOKENS})
     if outcome.failed or outcome.data.get("kind") != "page":
         return ""
     return f'{_DOCS} on "{topic}":\n\n{outcome.text}'

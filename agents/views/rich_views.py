@@ -15,7 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from agents.loop.record.run_state import ModelCall, ToolCall
-from agents.loop.running.run import RENDER
+from agents.loop.running.run_tools import RENDER
 from agents.plan.part import STAGES
 from agents.roles.names import format_role
 from agents.views.cost_table import KINDS, costs_by_role

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from agents.loop.record.run_state import ToolCall
-from agents.loop.running.run import RENDER
+from agents.loop.running.run_tools import RENDER
 from agents.views.formatting import format_time
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from agents.loop.running.run import VERIFIER
+from agents.loop.running.run_tools import VERIFIER
 from agents.protocol.findings import Finding
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def _tags(run: Run, stage: Stage, names: Sequence[str]) -> dict[str, Mapping[str
 
 def _collections(run: Run, stage: Stage, names: Sequence[str]) -> list[dict[str, Any]] | None:
     asked = {"sections": ["collections"], "objects": list(names), "max_tokens": _MOST_TOKENS}
-    outcome = run.use(VERIFIER, stage, "blender_scene_state", asked)
+    outcome = run.tools.use(VERIFIER, stage, "blender_scene_state", asked)
     return None if outcome.failed else outcome.data.get("collections")
 
 

@@ -12,10 +12,10 @@ from agents.loop.edit.inputs import picture
 from agents.loop.edit.untouched import blocks, compared, unplanned
 from agents.loop.errors import Unusable
 from agents.loop.record.events import PlanMade, ReferenceKept
-from agents.loop.record.journal import PLAN_NAME
 from agents.loop.review.evidence import still, still_width
 from agents.loop.review.verdicts import verify
-from agents.loop.running.run import RENDER, RUNNER, START, plan_file
+from agents.loop.running.position import START
+from agents.loop.running.run_tools import RENDER, RUNNER
 from agents.loop.task import RunTask
 from agents.roles.planner import Planner, format_edit_plan
 from simworlds.llm.messages import Picture
@@ -37,10 +37,10 @@ def edit(run: Run) -> RenderResult:
     reference = _reference(run)
     before = _opened(run)
     state = run.state(_FIRST)
-    seen = run.use(RUNNER, _FIRST, "blender_scene_layout_preview", {})
+    seen = run.tools.use(RUNNER, _FIRST, "blender_scene_layout_preview", {})
     planner = Planner(run.context, edit=True)
     plan = planner.edit(prompt_with_assets(run), state, before.names, seen.pictures, reference)
-    run.write(PLAN_NAME, plan_file(plan))
+    run.files.write_plan(plan)
     run.journal.note(PlanMade(edit=plan))
     run.task = task = replace(_task(run, plan, before), goal=reference, **_still_before(run, plan.render))
     wanted = plan.stages if options.stages else ALL_AT_ONCE
@@ -54,7 +54,7 @@ def _opened(run: Run) -> Blocks:
     """Opens the file to edit, and saves a copy of it as the start of the run."""
     file = run.options.file
     assert file is not None
-    opened = run.use(RUNNER, _FIRST, "blender_load", {"path": str(file)})
+    opened = run.tools.use(RUNNER, _FIRST, "blender_load", {"path": str(file)})
     if opened.failed:
         raise Unusable(f"{file} cannot be edited: {opened.text}")
     run.save(_FIRST, START)
@@ -63,7 +63,7 @@ def _opened(run: Run) -> Blocks:
 
 def _still_before(run: Run, render: RenderSettings) -> dict[str, Any]:
     """A still of the file as it is, and its frame; nothing if it cannot be rendered, for want of a camera say."""
-    outcome = run.use(RUNNER, _FIRST, RENDER, still("before", None, still_width(render)))
+    outcome = run.tools.use(RUNNER, _FIRST, RENDER, still("before", None, still_width(render)))
     if outcome.failed or not outcome.pictures:
         return {}
     data = outcome.data
@@ -77,9 +77,9 @@ def _reference(run: Run) -> Picture | None:
     kept = run.journal.find(ReferenceKept())
     if kept is None:
         given = picture(run.options.reference)
-        kept = ReferenceKept(path=run.keep(given), media_type=given.media_type)
+        kept = ReferenceKept(path=run.files.keep(given), media_type=given.media_type)
         run.journal.note(kept)
-    return Picture((run.root / kept.path).read_bytes(), kept.media_type)
+    return Picture((run.files.root / kept.path).read_bytes(), kept.media_type)
 
 
 def _task(run: Run, plan: EditPlan, before: Blocks) -> RunTask:

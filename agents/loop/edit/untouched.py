@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from agents.loop.edit.consequences import Consequences
 from agents.loop.errors import RunError
 from agents.loop.record.events import Edited
-from agents.loop.running.run import VERIFIER
+from agents.loop.running.run_tools import VERIFIER
 from agents.protocol.findings import Finding
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Blocks:
 def blocks(run: Run, stage: Stage) -> Blocks:
     """Those of the open scene. Raises RunError."""
     # In the verifier's name: it asks beside the review, and calls are found again by name and number.
-    outcome = run.use(VERIFIER, stage, "blender_scene_state", {"sections": ["data_blocks"]})
+    outcome = run.tools.use(VERIFIER, stage, "blender_scene_state", {"sections": ["data_blocks"]})
     data = outcome.data
     if not isinstance(data.get("data_blocks"), dict):
         raise RunError(f"The scene's data-blocks cannot be compared: {outcome.text}")

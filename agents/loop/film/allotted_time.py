@@ -30,9 +30,9 @@ def minutes_of(run: Run, ahead: float = 0.0, share: float = 1.0) -> float:
 
     Where that is what a limit leaves: ``ahead`` are seconds of work before it, ``share`` is the film's of the rest.
     """
-    if run.render_minutes is not None:
-        return run.render_minutes
-    left, limit = run.seconds_left, run.limits.max_minutes
+    if run.film_limits.minutes is not None:
+        return run.film_limits.minutes
+    left, limit = run.deadline.seconds_left, run.deadline.max_minutes
     if left is None or limit is None:
         return DEFAULT_RENDER_MINUTES
     left -= min(_REVIEW_SECONDS, limit * 60 * _REVIEW_SHARE) + ahead
@@ -47,7 +47,9 @@ def is_time_to_mend(run: Run, number: int) -> bool:
     made, weighed = run.journal.find(SceneRendered(round=number)), run.journal.find(MendWeighed(round=number))
     if weighed is not None:
         return weighed.is_time
-    if made is None or made.kind != "animation" or run.render_minutes is not None or run.seconds_left is None:
+    if made is None or made.kind != "animation":
+        return True
+    if run.film_limits.minutes is not None or run.deadline.seconds_left is None:
         return True
     is_time = minutes_of(run, _MENDING_SECONDS) * 60 >= (made.seconds or 0.0) * _WORTH
     run.journal.note(MendWeighed(round=number, is_time=is_time))
@@ -61,11 +63,11 @@ def room_for_film(run: Run) -> str:
     without it.
     """
     if run.journal.find(PlanMade()) is None and run.options.origin != "replay":
-        limit = run.limits.max_minutes
+        limit = run.deadline.max_minutes
         usual = min(
             DEFAULT_RENDER_MINUTES, round(limit * _PLANNED_SHARE, 1) if limit else DEFAULT_RENDER_MINUTES
         )
-        minutes, cores = run.render_minutes or usual, SYSTEM.cores()
+        minutes, cores = run.film_limits.minutes or usual, SYSTEM.cores()
         millions = round(minutes * 60 * cores * _SAMPLES_A_CORE_SECOND, -1)
         text = _ROOM.format(minutes=minutes, cores=counted(cores, "core"), millions=millions)
         run.journal.note(RoomTold(text=text))

@@ -13,9 +13,9 @@ from agents.loop.film.fitting import FilmSettings, FrameTime, TimedFrame, fitted
 from agents.loop.film.pictures import link, pictures_of
 from agents.loop.film.telling_frames import telling_frames
 from agents.loop.record.events import Drafted, FilmFitted, SceneRendered
-from agents.loop.running.run import RENDER, RUNNER
+from agents.loop.running.run_tools import RENDER, RUNNER
 from agents.roles import coder
-from simworlds.llm.messages import Picture, Text
+from simworlds.llm.messages import Text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -84,7 +84,7 @@ def asked_of(plan: RenderSettings) -> dict[str, Any]:
 
 def draft(run: Run, plan: RenderSettings, number: int) -> Draft:
     """Times frames, fits the film, and shows what it will be. Raises NotRendered."""
-    run.attempt = number
+    run.position.attempt = number
     measured = _measured(run, plan)
     count = measured.planned.frames
     minutes = minutes_of(run, _PREVIEW_SECONDS + _LOOK_SECONDS, count / (count + STILLS))
@@ -96,7 +96,7 @@ def draft(run: Run, plan: RenderSettings, number: int) -> Draft:
     known = _noted(run, plan, number, Draft(measured, film, minutes), words, stills, video)
     shown: list[Block] = [Text(known.text)]
     for frame, path in zip(frames, known.pictures, strict=False):
-        shown += [Text(f"Frame {frame}:"), Picture(run.picture(path))]
+        shown += [Text(f"Frame {frame}:"), run.files.picture(path)]
     return Draft(measured, film, minutes, tuple(shown))
 
 
@@ -106,7 +106,7 @@ def draft_again(run: Run, plan: RenderSettings, number: int, earlier: Draft) -> 
     Where no more than materials are mended, a frame takes as long as before: that the machine is busier by now is no
     reason to give up quality for which there is time. Raises NotRendered.
     """
-    run.attempt = number
+    run.position.attempt = number
     measured, busy = earlier.measured, None
     if _is_recoloured(run, number):
         planned, frame_time = measured.planned, measured.frame_time
@@ -130,8 +130,9 @@ def draft_again(run: Run, plan: RenderSettings, number: int, earlier: Draft) -> 
 def _is_recoloured(run: Run, attempt: int) -> bool:
     """Whether the coder has changed materials and their pictures alone, as the tool told of each piece of its code."""
     about = {"type": "tool.answered", "role": coder.NAME, "stage": "render", "attempt": attempt}
+    is_read_only = run.tools.client.is_read_only
     for row in run.journal.rows:
-        if not about.items() <= row.items() or row["name"] == RENDER or run.tools.is_read_only(row["name"]):
+        if not about.items() <= row.items() or row["name"] == RENDER or is_read_only(row["name"]):
             continue
         data = row.get("data") or {}
         if row["name"] != _EXECUTE or data.get("unwatched") or not {*data.get("changed", "?")} <= _LOOKS:
@@ -144,7 +145,7 @@ def _is_recoloured(run: Run, attempt: int) -> bool:
 
 def _measured(run: Run, plan: RenderSettings) -> Measured:
     """By three frames, of which the first warms up."""
-    samples = run.samples or plan.samples
+    samples = run.film_limits.samples or plan.samples
     few, _ = _timed(run, plan, min(_FEW, samples))
     more, (first, last) = _timed(run, plan, min(_MORE, samples))
     small, _ = _timed(run, plan, min(_FEW, samples), _SMALLER)
@@ -188,7 +189,7 @@ def _noted(  # noqa: PLR0913, PLR0917 - all that a draft is
             most=made.minutes,
             options=_OPTIONS.format(planned.samples, plan.samples) if planned.samples != plan.samples else "",
         )
-        kept = tuple(run.keep(picture) for _, picture in pictures_of(stills))
+        kept = tuple(run.files.keep(picture) for _, picture in pictures_of(stills))
         known = Drafted(round=number, path=video, pictures=kept, text=text)
         run.journal.note(known)
     return known
@@ -207,7 +208,7 @@ def settled_film(run: Run, film: FilmSettings, number: int, minutes: float) -> F
     """
     known = run.journal.find(FilmFitted(round=number))
     is_made = run.journal.find(SceneRendered(round=number)) is not None
-    is_told = run.limits.render_minutes is not None or run.limits.samples is not None
+    is_told = run.film_limits.is_news
     if known is not None and (is_made or not is_told):
         return FilmSettings(
             known.width, known.height, known.samples, known.frames, known.seconds, known.lowered
@@ -239,16 +240,16 @@ def _preview(run: Run, plan: RenderSettings, film: FilmSettings, frames: int) ->
         "step": max(1, math.ceil(film.frames / frames)),
         "time_budget": _PREVIEW_SECONDS,
     }
-    outcome = run.use(RUNNER, "render", RENDER, asked_of(plan) | small)
+    outcome = run.tools.use(RUNNER, "render", RENDER, asked_of(plan) | small)
     video = outcome.data.get("video")
     if outcome.failed or not video or not Path(video["path"]).is_file():
         return ""
-    link(Path(video["path"]), run.root / DRAFT)
+    link(Path(video["path"]), run.files.root / DRAFT)
     return DRAFT
 
 
 def _rendered(run: Run, asked: Mapping[str, Any]) -> Mapping[str, Any]:
-    outcome = run.use(RUNNER, "render", RENDER, asked)
+    outcome = run.tools.use(RUNNER, "render", RENDER, asked)
     if outcome.failed:
         raise NotRendered(f"The scene could not be rendered: {outcome.text}")
     return outcome.data

@@ -14,7 +14,7 @@ from agents.loop.film.pictures import link, pictures_of
 from agents.loop.record.events import FilmDecided, FinalReviewed, SceneRendered
 from agents.loop.review.verdicts import note_verdict, verify
 from agents.loop.review.withdrawals import format_withdrawn
-from agents.loop.running.run import RENDER, RUNNER
+from agents.loop.running.run_tools import RENDER, RUNNER
 from agents.plan.tactical import FilmDecision, FinalReview
 from agents.roles.coder import Coder
 from agents.roles.final_reviewer import final_review
@@ -71,7 +71,7 @@ class LastStage:
 
     def finish(self) -> RenderResult:
         """The result, reviewed, and fixed at most once for the final reviewer. Raises RunError, ModelError."""
-        self._run.stage = "render"
+        self._run.position.stage = "render"
         self._mended_if_need_be(self._draft)
         rendering = self._mended_if_need_be(lambda: self._render(1))
         verdict = self._review(rendering, 1)
@@ -119,13 +119,13 @@ class LastStage:
     def _render(self, number: int) -> RenderResult:
         """Renders the scene as planned (without a plan: by its own settings). Raises NotRendered."""
         run, plan, film = self._run, self._plan, self._film
-        run.attempt = self._attempt
+        run.position.attempt = self._attempt
         minutes = minutes_of(run)
         asked: dict[str, Any] = {"kind": plan.kind if plan else "still", "time_budget": minutes * 60}
         if plan is not None:
             width, height = plan.resolution
             asked |= asked_of(plan) | {
-                "samples": run.samples or plan.samples,
+                "samples": run.film_limits.samples or plan.samples,
                 "width": width,
                 "height": height,
             }
@@ -135,14 +135,14 @@ class LastStage:
         if self._task.plan is not None and asked["kind"] == "animation":
             begun = sorted({phase.start for phase in self._task.plan.motion.phases})
             asked["telling"] = begun[:_MOST_TELLING]
-        outcome = run.use(RUNNER, "render", RENDER, asked)
+        outcome = run.tools.use(RUNNER, "render", RENDER, asked)
         if outcome.failed:
             raise NotRendered(f"The scene could not be rendered: {outcome.text}")
         data = outcome.data
         moving = data["kind"] == "animation"
         made = Path(data["video"]["path"] if moving and data.get("video") else data["path"])
         frames = tuple(sorted(Path(data["path"]).glob("*.png"))) if moving else (made,)
-        result = run.root / ("video.mp4" if moving else "still.png")
+        result = run.files.root / ("video.mp4" if moving else "still.png")
         if made.is_file():
             link(made, result)
         shown = pictures_of(_telling(run, frames))
@@ -154,7 +154,7 @@ class LastStage:
                 frames=len(frames),
                 samples=data.get("samples"),
                 seconds=data.get("seconds"),
-                pictures=tuple(run.keep(picture) for _, picture in shown),
+                pictures=tuple(run.files.keep(picture) for _, picture in shown),
             )
         )
         return RenderResult(result, frames, outcome.text, shown, data.get("samples"), film)
@@ -166,7 +166,8 @@ class LastStage:
         if number > 1:
             content.append(Text(_MENDED))
         if rendering.film is not None and self._plan is not None:
-            content.append(Text(quality_of(rendering.film, self._plan, self._run.samples, rendering.samples)))
+            asked = self._run.film_limits.samples
+            content.append(Text(quality_of(rendering.film, self._plan, asked, rendering.samples)))
         if told := format_withdrawn(self._run.withdrawn):
             content.append(Text(told))
         if compared_with := _in_film(rendering, task):
@@ -193,7 +194,7 @@ class LastStage:
         """
         run, task = self._run, self._task
         before, self._attempt = self._attempt, self._attempt + 1
-        run.attempt = self._attempt
+        run.position.attempt = self._attempt
         run.roll_back("render", before, self._last)
         coder = Coder(run.context, "render", task.plan_text, edit=task.edit)
         worked = run.attempted("render", self._attempt, lambda: coder.fix(instructions, self._standing()))
@@ -203,8 +204,8 @@ class LastStage:
             if run.options.early:  # a later fix begins with it
                 name = f"mended-{self._attempt}"
                 run.save("render", name)
-                self._last = run.closed = name
-                run.is_changed = False
+                self._last = name
+                run.position.close(name)
             return True
         run.roll_back("render", self._attempt, self._last)
         return False

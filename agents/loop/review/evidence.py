@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from agents.loop.edit.comparison import compared
 from agents.loop.film.telling_frames import MeasuredMotion, telling_frames
-from agents.loop.running.run import RENDER, RUNNER
+from agents.loop.running.run_tools import RENDER, RUNNER
 from agents.plan.part import STAGES
 from simworlds.llm.messages import Picture, Text
 
@@ -81,7 +81,7 @@ class _Shown:
         self, name: str, arguments: Mapping[str, Any], known: Mapping[str, Any] | None = None
     ) -> Mapping[str, Any]:
         """Shows what a call gives; returns it as data. ``known``: arguments that follow from the run."""
-        outcome = self._run.use(RUNNER, self._stage, name, arguments, known)
+        outcome = self._run.tools.use(RUNNER, self._stage, name, arguments, known)
         self.blocks += [Text(f"{name}:"), *outcome.content]
         return outcome.data
 
@@ -186,7 +186,9 @@ def edit_comparison(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
     """The file as it was, as it is, and as it is to be, at one size; nothing where there is nothing to compare with."""
     if task.before is None and task.goal is None:
         return []
-    outcome = run.use(RUNNER, stage, RENDER, _again(still("present", task.before_frame, task.before_width)))
+    outcome = run.tools.use(
+        RUNNER, stage, RENDER, _again(still("present", task.before_frame, task.before_width))
+    )
     now = next((block for block in outcome.content if isinstance(block, Picture)), None)
     words = [Text(f"{RENDER}, the scene as it is now:"), *(b for b in outcome.content if isinstance(b, Text))]
     return [*words, *(compared(run, task, now) if now is not None else ())]

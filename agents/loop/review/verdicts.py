@@ -11,7 +11,7 @@ from agents.loop.edit.declared_mechanisms import undeclared
 from agents.loop.record.events import Reviewed, Verified
 from agents.loop.review.evidence import evidence, moves
 from agents.loop.review.withdrawals import as_soft
-from agents.loop.running.run import VERIFIER, VERIFY
+from agents.loop.running.run_tools import VERIFIER, VERIFY
 from agents.plan.tactical import Review
 from agents.protocol.findings import Finding
 from simworlds.llm.errors import Declined, Misfit
@@ -50,7 +50,7 @@ def verify(run: Run, stage: Stage, task: RunTask) -> VerifierVerdict:
     """Judges the scene by the rules of the stage. Findings that were there before the edit do not count."""
     if not run.options.verifier:
         return VerifierVerdict(_OFF)
-    outcome = run.use(VERIFIER, stage, VERIFY, {}, task.verification(stage))
+    outcome = run.tools.use(VERIFIER, stage, VERIFY, {}, task.verification(stage))
     if outcome.failed or "findings" not in outcome.data:
         return _undecided(outcome.text, task)
     findings, text = told_since(task.known, outcome)
@@ -81,7 +81,7 @@ def _undecided(why: str, task: RunTask) -> VerifierVerdict:
 def review(run: Run, reviewer: Reviewer, tactic: TacticalPlan, task: RunTask) -> Review:
     """The reviewer's verdict. A reviewer that declines, or gives no valid answer, blocks."""
     try:
-        return reviewer.review(tactic, run.attempt or 1, evidence(run, tactic.stage, task))
+        return reviewer.review(tactic, run.position.attempt or 1, evidence(run, tactic.stage, task))
     except (Declined, Misfit) as error:
         return Review(judgements=(), blocking=True, summary=f"There is no review: {error}"[:4000])
 

@@ -76,6 +76,7 @@ class Asked:
     def __init__(self) -> None:
         self.options = Options(mode="make", prompt="A mug.")
         self.stills: tuple[()] = ()
+        self.tools = self
         self.calls: dict[str, dict[str, Any]] = {}
 
     def use(

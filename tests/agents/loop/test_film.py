@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from threading import Event
 from typing import TYPE_CHECKING, Any
 
 import crates
@@ -13,12 +14,14 @@ from run_sessions import answered, asked_of, go_on, seat, sit
 from team import DONE, NEEDS_FIX, Team, call, run, whose
 
 from agents.loop.film import allotted_time, draft
+from agents.loop.film.film_limits import FilmLimits
 from agents.loop.film.fitting import FilmSettings, FrameTime, TimedFrame, fitted
 from agents.loop.film.rendering import quality_of
-from agents.loop.options import RunLimits
+from agents.loop.options import Options, RunLimits
 from agents.loop.record.events import SceneRendered
 from agents.loop.record.journal import Journal
 from agents.loop.record.reducer import read_run_state
+from agents.loop.running.deadline import Deadline
 from agents.plan.scene import RenderSettings
 from agents.views.report.page import write_report
 
@@ -127,22 +130,32 @@ def test_a_small_frame_of_a_busy_moment_takes_no_longer_than_a_whole_one() -> No
 class Limited:
     """What of a run tells how long its film may take, and how it was begun."""
 
-    limits: RunLimits
-    seconds_left: float | None = None
-    render_minutes: float | None = None
+    deadline: Deadline
+    film_limits: FilmLimits
     journal: Journal | None = None
 
     def minutes(self, ahead: float = 0.0, share: float = 1.0) -> float:
         return allotted_time.minutes_of(self, ahead, share)  # type: ignore[arg-type]
 
 
+def limited(
+    max_minutes: float | None = None, left: float | None = None, film_limits: FilmLimits | None = None
+) -> Limited:
+    """A run with so many seconds ``left`` of its limit."""
+    deadline = Deadline(Event(), max_minutes)
+    if left is not None:
+        worked = (deadline.seconds_left or 0.0) - left
+        deadline = replace(deadline, began=deadline.began - worked)
+    return Limited(deadline, film_limits or FilmLimits())
+
+
 def test_a_film_has_what_the_limit_leaves_but_for_the_review() -> None:
-    assert Limited(RunLimits()).minutes() == 20
-    assert Limited(RunLimits(max_minutes=85), 43 * 60).minutes() == 40
-    assert Limited(RunLimits(max_minutes=85), 43 * 60).minutes(120, 0.5) == 19
-    assert Limited(RunLimits(max_minutes=10), 6 * 60).minutes() == 5
-    assert Limited(RunLimits(max_minutes=10), -5).minutes() == 1, "a film of few frames, rather than none"
-    assert Limited(RunLimits(max_minutes=85), 43 * 60, render_minutes=7).minutes() == 7
+    assert limited().minutes() == 20
+    assert limited(85, 43 * 60).minutes() == 40
+    assert limited(85, 43 * 60).minutes(120, 0.5) == 19
+    assert limited(10, 6 * 60).minutes() == 5
+    assert limited(10, -5).minutes() == 1, "a film of few frames, rather than none"
+    assert limited(85, 43 * 60, FilmLimits(minutes=7)).minutes() == 7
 
 
 def test_a_film_planned_in_eevee_is_drawn_by_what_drew_its_stills() -> None:
@@ -183,7 +196,7 @@ def journal(tmp_path: Path) -> Iterator[Journal]:
 
 def test_a_film_is_not_mended_where_the_limit_leaves_too_little_and_that_stays_so(journal: Journal) -> None:
     def is_time(left: float | None, number: int = 1) -> bool:
-        run = Limited(RunLimits(max_minutes=85), left, journal=journal)
+        run = replace(limited(None if left is None else 85, left), journal=journal)
         return allotted_time.is_time_to_mend(run, number)  # type: ignore[arg-type]
 
     for number in (1, 2):
@@ -197,7 +210,8 @@ def test_a_film_is_not_mended_where_the_limit_leaves_too_little_and_that_stays_s
 
 def test_a_film_goes_on_as_it_was_begun_unless_the_session_is_told_otherwise(journal: Journal) -> None:
     def settled(film: FilmSettings, minutes: float, **limits: float) -> FilmSettings:
-        run = Limited(RunLimits.model_validate(limits), journal=journal)
+        told = FilmLimits.of(Options(prompt="A film."), RunLimits.model_validate(limits), journal)
+        run = replace(limited(film_limits=told), journal=journal)
         return draft.settled_film(run, film, 1, minutes)  # type: ignore[arg-type]
 
     begun = FilmSettings(764, 430, 16, 84, 1000.0, "16 samples instead of 32")
