@@ -47,18 +47,9 @@ def after(state: RunState, event: events.Event) -> RunState:  # noqa: PLR0911, P
         event = event.model_copy(update={"stage": ""})  # made ready for the first stage, while it is planned
     match event:
         case events.RunBegan():
-            names = ("mode", "prompt", "version", "blender", "source", "models", "options")
-            return replace(state, **{name: getattr(event, name) for name in names})
+            return _run_began(state, event)
         case events.SessionBegan():
-            minutes = event.render_minutes
-            options = state.options if minutes is None else {**state.options, "render_minutes": minutes}
-            limit = event.max_minutes
-            # A film that gets other samples or another time is fitted anew.
-            is_fitted = minutes is None and event.render_samples is None
-            film = state.film if is_fitted or state.renderings else None
-            return replace(
-                state, sessions=state.sessions + 1, ending=None, options=options, limit=limit, film=film
-            )
+            return _session_began(state, event)
         case events.PlanMade():
             return replace(state, plan=event.plan or state.plan, edit=event.edit or state.edit)
         case events.StageMoved():
@@ -78,9 +69,7 @@ def after(state: RunState, event: events.Event) -> RunState:  # noqa: PLR0911, P
         case events.RolledBack():
             return _with_attempt(state, event, rolled_back=event.to)
         case events.ModelAsked():
-            pictures = sum(_pictures(event.texts.get(part, "")) for part in set(event.parts) - state.sent)
-            state = replace(state, sent=state.sent.union(event.parts))
-            return _begin(state, ModelCall(**_place(state, event), model=event.model, pictures=pictures))
+            return _model_asked(state, event)
         case events.ToolCalled():
             return _begin(state, ToolCall(**_place(state, event), name=event.name, input=event.input))
         case events.ModelAnswered():
@@ -210,6 +199,12 @@ def _begin(state: RunState, step: Step) -> RunState:
     return replace(state, pending=(*state.pending, step))
 
 
+def _model_asked(state: RunState, event: events.ModelAsked) -> RunState:
+    pictures = sum(_pictures(event.texts.get(part, "")) for part in set(event.parts) - state.sent)
+    state = replace(state, sent=state.sent.union(event.parts))
+    return _begin(state, ModelCall(**_place(state, event), model=event.model, pictures=pictures))
+
+
 def _pictures(text: str) -> int:
     """How many pictures there are in what a model was told, as ``simworlds.llm.records.canonical`` writes it."""
     return len(_PICTURE.findall(text))
@@ -272,6 +267,34 @@ def _tool_answered(state: RunState, event: events.ToolAnswered) -> RunState:
 
 
 # The run
+
+
+def _run_began(state: RunState, event: events.RunBegan) -> RunState:
+    return replace(
+        state,
+        mode=event.mode,
+        prompt=event.prompt,
+        version=event.version,
+        blender=event.blender,
+        source=event.source,
+        models=event.models,
+        options=event.options,
+    )
+
+
+def _session_began(state: RunState, event: events.SessionBegan) -> RunState:
+    minutes = event.render_minutes
+    options = state.options if minutes is None else {**state.options, "render_minutes": minutes}
+    # A film that gets other samples or another time is fitted anew.
+    is_fitted = minutes is None and event.render_samples is None
+    return replace(
+        state,
+        sessions=state.sessions + 1,
+        ending=None,
+        options=options,
+        limit=event.max_minutes,
+        film=state.film if is_fitted or state.renderings else None,
+    )
 
 
 def _rendered(state: RunState, event: events.SceneRendered) -> RunState:
