@@ -249,7 +249,7 @@ def _write_report(run: Path) -> Path | None:
 
 def _of_model(given: dict[str, Any]) -> dict[str, Any]:
     asked = {name: given[name] for name in ("provider", "model", "price") if given[name] is not None}
-    models = dict(one.partition("=")[::2] for one in given["role_model"])
+    models = dict(choice.partition("=")[::2] for choice in given["role_model"])
     for role, name in models.items():
         if role not in ROLES or not name:
             raise click.UsageError(f"--role-model takes ROLE=NAME with a role of {', '.join(ROLES)}.")

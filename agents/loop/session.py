@@ -197,40 +197,12 @@ def _with_results(root: Path, ended: Ended) -> Ended:
 
 
 def _run(root: Path, options: Options, journal: Journal, session: RunSession) -> Ended:
-    stop = session.stop
-    journal.note(
-        RunBegan(
-            version=own_version(),
-            mode=options.mode,
-            prompt=options.prompt,
-            source=options.source_text,
-            models=_models(options),
-            blender=find_blender(options.blender, options.blender_exe).version,
-            options=options.model_dump(mode="json"),
-        )
-    )
-    limits = session.limits
-    journal.append(
-        SessionBegan(
-            pid=os.getpid(),
-            render_minutes=limits.render_minutes,
-            render_samples=limits.samples,
-            max_minutes=limits.max_minutes,
-            max_cost=limits.max_cost,
-        )
-    )
+    stop, limits = session.stop, session.limits
+    _note_beginning(options, limits, journal)
     repeat_told(options, journal)
     files = RunFiles(root)
     files.checkpoints.mkdir(exist_ok=True)
-    setup = SessionSetup(
-        best_sandbox(options.sandbox),
-        version=options.blender,
-        blender_exe=options.blender_exe,
-        read=(files.checkpoints, *_readable(options)),
-        run=files.of_blender,
-        assets=options.assets,
-        tell=_LOG.info,
-    )
+    setup = _setup(options, files)
     with ExitStack() as stack:
         max_cost = journal.newest(SessionBegan, value=lambda began: began.max_cost)
         pause = stop.event.wait  # asked to stop, nobody waits for an overloaded server
@@ -259,6 +231,43 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
         finally:
             stop.tools = None
     return Ended("done", "", files.scene, rendering.path)
+
+
+def _note_beginning(options: Options, limits: RunLimits, journal: Journal) -> None:
+    """Journals what the run is, if that is not known, and that a session begins. Raises CannotStart."""
+    journal.note(
+        RunBegan(
+            version=own_version(),
+            mode=options.mode,
+            prompt=options.prompt,
+            source=options.source_text,
+            models=_models(options),
+            blender=find_blender(options.blender, options.blender_exe).version,
+            options=options.model_dump(mode="json"),
+        )
+    )
+    journal.append(
+        SessionBegan(
+            pid=os.getpid(),
+            render_minutes=limits.render_minutes,
+            render_samples=limits.samples,
+            max_minutes=limits.max_minutes,
+            max_cost=limits.max_cost,
+        )
+    )
+
+
+def _setup(options: Options, files: RunFiles) -> SessionSetup:
+    """How the Blender of a run is set up."""
+    return SessionSetup(
+        best_sandbox(options.sandbox),
+        version=options.blender,
+        blender_exe=options.blender_exe,
+        read=(files.checkpoints, *_readable(options)),
+        run=files.of_blender,
+        assets=options.assets,
+        tell=_LOG.info,
+    )
 
 
 def _models(options: Options) -> dict[str, str]:

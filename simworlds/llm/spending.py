@@ -41,6 +41,11 @@ class SpendingRow:
     unpriced: int = 0
     recorded: int = 0
 
+    @classmethod
+    def paid(cls, role: str, stage: str, turn: Turn) -> SpendingRow:
+        """What a turn that was paid for has used."""
+        return cls(role, stage, 1, turn.usage + turn.lost, turn.cost or 0.0, int(turn.cost is None))
+
     def __add__(self, other: SpendingRow) -> SpendingRow:
         return SpendingRow(
             self.role if self.role == other.role else "",
@@ -108,7 +113,7 @@ class Spending:
             self._add(SpendingRow(ask.role, ask.stage, recorded=1))
             return
         self._learn(ask, turn.usage)
-        self._add(_row(ask.role, ask.stage, turn))
+        self._add(SpendingRow.paid(ask.role, ask.stage, turn))
 
     def count_lost(self, ask: Ask, lost: Usage) -> None:
         """Counts the usage of attempts without an answer."""
@@ -118,7 +123,7 @@ class Spending:
 
     def carry(self, role: str, stage: str, turn: Turn) -> None:
         """Counts a turn that this run paid for before it was resumed."""
-        self._add(_row(role, stage, turn))
+        self._add(SpendingRow.paid(role, stage, turn))
 
     def before_retry(self, retry: Retry) -> None:
         """For Claude's ``tell``: raises OverBudget if the limit does not allow the retry."""
@@ -160,10 +165,6 @@ def no_price(model: str, max_cost: float) -> str:
         f"No price is known for the model {model!r}, so the limit of ${max_cost:.2f} cannot be kept. Give its price, "
         "in dollars per million tokens, or no limit."
     )
-
-
-def _row(role: str, stage: str, turn: Turn) -> SpendingRow:
-    return SpendingRow(role, stage, 1, turn.usage + turn.lost, turn.cost or 0.0, int(turn.cost is None))
 
 
 class Metered:

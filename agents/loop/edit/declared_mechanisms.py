@@ -28,9 +28,9 @@ def _tags(run: Run, stage: Stage, names: Sequence[str]) -> dict[str, Mapping[str
     """{collection: its tags} of these collections; without those that are not there, or empty."""
     found = _collections(run, stage, names)
     if found is None:  # one of the names is nobody's
-        found = [one for name in names for one in _collections(run, stage, [name]) or ()]
+        found = [collection for name in names for collection in _collections(run, stage, [name]) or ()]
     wanted = set(names)
-    return {one["name"]: one.get("tags", {}) for one in found if one["name"] in wanted}
+    return {known["name"]: known.get("tags", {}) for known in found if known["name"] in wanted}
 
 
 def _collections(run: Run, stage: Stage, names: Sequence[str]) -> list[dict[str, Any]] | None:

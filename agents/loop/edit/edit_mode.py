@@ -93,7 +93,7 @@ def _task(run: Run, plan: EditPlan, before: Blocks) -> RunTask:
         plan_text=format_edit_plan(plan, run.options.prompt, told),
         known=known,
         declared=plan.actors,
-        targets=tuple(dict.fromkeys(name for one in plan.tasks for name in one.targets)),
+        targets=tuple(dict.fromkeys(name for task in plan.tasks for name in task.targets)),
         old=before.objects,
         unplanned=partial(unplanned, run, before, plan),
     )

@@ -106,5 +106,5 @@ def _unplanned_finding(edited: Edited, name: str) -> Finding:
     return Finding(UNPLANNED, "hard", (own,), message, f"{fix}.")
 
 
-def _differing(one: Mapping[str, str], other: Mapping[str, str]) -> tuple[str, ...]:
-    return tuple(sorted(part for part in one.keys() | other.keys() if one.get(part) != other.get(part)))
+def _differing(before: Mapping[str, str], after: Mapping[str, str]) -> tuple[str, ...]:
+    return tuple(sorted(part for part in before.keys() | after.keys() if before.get(part) != after.get(part)))

@@ -237,7 +237,7 @@ def _in_film(rendering: RenderResult, task: RunTask) -> Picture | None:
     if task.before is None and task.goal is None:
         return None
     name = f"{task.before_frame or 0:04d}"
-    path = next((one for one in rendering.frames if one.stem == name), rendering.frames[0])
+    path = next((frame for frame in rendering.frames if frame.stem == name), rendering.frames[0])
     known = dict(rendering.shown)
     return known[path] if path in known else pictures_of([path])[0][1]
 

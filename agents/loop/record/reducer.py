@@ -240,9 +240,7 @@ def _model_answered(state: RunState, event: events.ModelAnswered) -> RunState:
 def _charged(state: RunState, asked: ModelCall, turn: Turn) -> RunState:
     row = SpendingRow(asked.role, asked.stage, recorded=1)
     if turn.live:
-        row = SpendingRow(
-            asked.role, asked.stage, 1, turn.usage + turn.lost, turn.cost or 0.0, int(turn.cost is None)
-        )
+        row = SpendingRow.paid(asked.role, asked.stage, turn)
     rows = {(other.role, other.stage): other for other in state.spending}
     key = (row.role, row.stage)
     rows[key] = rows[key] + row if key in rows else row

@@ -186,12 +186,12 @@ class RunState:
 
     def stage(self, name: str) -> StageRun | None:
         """The stage of that name, if it has been come to."""
-        return next((one for one in self.stages if one.name == name), None)
+        return next((stage for stage in self.stages if stage.name == name), None)
 
     @property
     def current(self) -> StageRun | None:
         """The stage that is being worked on, or was when the run ended early."""
-        return next((one for one in reversed(self.stages) if one.state == "running"), None)
+        return next((stage for stage in reversed(self.stages) if stage.state == "running"), None)
 
     @property
     def title(self) -> str:

@@ -162,7 +162,9 @@ def motion_sheets(actors: Sequence[str], phases: Iterable[MotionPhase]) -> list[
 def _is_in_a_row(phases: set[tuple[int, int, str]]) -> bool:
     """Whether none begins before another ends."""
     ordered = sorted(phases)
-    return len(ordered) <= _MOST_PHASES and all(one[1] <= two[0] for one, two in itertools.pairwise(ordered))
+    return len(ordered) <= _MOST_PHASES and all(
+        phase[1] <= after[0] for phase, after in itertools.pairwise(ordered)
+    )
 
 
 def _telling_frames(task: RunTask, motion: MeasuredMotion) -> list[int]:
@@ -176,9 +178,9 @@ def _telling_frames(task: RunTask, motion: MeasuredMotion) -> list[int]:
 def _coders_stills(run: Run) -> list[Block | str]:
     """The last pictures that the coder rendered in this attempt."""
     blocks: list[Block | str] = []
-    for one in run.stills:
-        when = "of the scene as it is" if run.is_current(one) else "made before its last changes"
-        blocks += [Text(f"A still of the coder's own, {when}. {one.text}"), one.picture]
+    for still in run.stills:
+        when = "of the scene as it is" if run.is_current(still) else "made before its last changes"
+        blocks += [Text(f"A still of the coder's own, {when}. {still.text}"), still.picture]
     return blocks
 
 

@@ -125,14 +125,15 @@ def format_review(review: Review, tactic: TacticalPlan) -> str:
     """The review in words, for the other roles; of the lines of acceptance, those that do not hold."""
     lines = [f"{_verdict(review)}: {review.summary}"]
     lines += [
-        f"- {'yes' if one.holds else 'NO'}: {one.question} ({one.evidence})" for one in review.judgements
+        f"- {'yes' if answer.holds else 'NO'}: {answer.question} ({answer.evidence})"
+        for answer in review.judgements
     ]
-    for one in review.acceptance:
-        line = tactic.acceptance[one.line - 1]
-        if one.verdict == "fails":
-            lines.append(f"- Acceptance FAILS: {line} ({one.evidence})")
-        elif one.verdict == "later":
-            lines.append(f"- Acceptance left to the stage {one.stage}: {line} ({one.evidence})")
+    for answer in review.acceptance:
+        line = tactic.acceptance[answer.line - 1]
+        if answer.verdict == "fails":
+            lines.append(f"- Acceptance FAILS: {line} ({answer.evidence})")
+        elif answer.verdict == "later":
+            lines.append(f"- Acceptance left to the stage {answer.stage}: {line} ({answer.evidence})")
     return "\n".join(lines)
 
 

@@ -20,7 +20,7 @@ def as_soft(findings: Iterable[Finding], withdrawn: Sequence[Withdrawal]) -> tup
     read: list[Finding] = []
     gone: list[Finding] = []
     for finding in findings:
-        is_gone = any(one.covers(finding) for one in withdrawn)
+        is_gone = any(withdrawal.covers(finding) for withdrawal in withdrawn)
         gone += [finding] if is_gone else []
         read.append(replace(finding, severity="soft") if is_gone else finding)
     if not gone:

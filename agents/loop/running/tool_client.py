@@ -107,8 +107,10 @@ class ToolClient:
 
     def offered(self, names: Sequence[str]) -> tuple[Tool, ...]:
         """The tools of these names, as a model is told of them."""
-        found = (self._tools[name] for name in names)
-        return tuple(Tool(one.name, one.description or "", lean_arguments(one.input_schema)) for one in found)
+        tools = (self._tools[name] for name in names)
+        return tuple(
+            Tool(tool.name, tool.description or "", lean_arguments(tool.input_schema)) for tool in tools
+        )
 
     def is_read_only(self, name: str) -> bool:
         """Whether a tool leaves the scene as it is; unknown tools do."""
@@ -172,7 +174,7 @@ class ToolClient:
             raise
         finally:
             self._running.discard(future)
-        content = tuple(block for one in result.content if (block := _block(one)) is not None)
+        content = tuple(block for given in result.content if (block := _block(given)) is not None)
         data = result.structured_content or {}
         return ToolOutcome(content, data, bool(result.is_error), time.monotonic() - began)
 

@@ -217,9 +217,9 @@ def _said(ask: Ask) -> str:
     """The words of the user's last message, those of tools included."""
     last = next((message for message in reversed(ask.messages) if message.role == "user"), None)
     words: list[str] = []
-    for block in last.content if last else ():
-        inner = block.content if isinstance(block, ToolResult) else (block,)
-        words += [one.text for one in inner if isinstance(one, Text)]
+    for said in last.content if last else ():
+        inner = said.content if isinstance(said, ToolResult) else (said,)
+        words += [block.text for block in inner if isinstance(block, Text)]
     return "\n".join(words)
 
 
