@@ -178,9 +178,9 @@ def _telling_frames(task: RunTask, motion: MeasuredMotion) -> list[int]:
 def _coders_stills(run: Run) -> list[Block | str]:
     """The last pictures that the coder rendered in this attempt."""
     blocks: list[Block | str] = []
-    for still in run.stills:
-        when = "of the scene as it is" if run.is_current(still) else "made before its last changes"
-        blocks += [Text(f"A still of the coder's own, {when}. {still.text}"), still.picture]
+    for kept in run.stills:
+        when = "of the scene as it is" if run.is_current(kept) else "made before its last changes"
+        blocks += [Text(f"A still of the coder's own, {when}. {kept.text}"), kept.picture]
     return blocks
 
 

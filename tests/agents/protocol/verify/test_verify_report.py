@@ -12,7 +12,7 @@ from rich.console import Console
 
 from agents.protocol.findings import Finding, Report
 from agents.protocol.report.grouping import group_findings
-from agents.protocol.report.json_report import as_json, dump_json
+from agents.protocol.report.json_report import as_json, dump_json, read_findings
 from agents.protocol.report.markdown import as_text
 from agents.protocol.report.sarif import as_sarif, sarif_failure
 from agents.protocol.report.summary import VerificationScope, coverage, exit_code, verdict
@@ -214,6 +214,13 @@ def test_json_keeps_every_finding_and_the_state_of_every_rule() -> None:
     }
     assert data["rules"][2]["reason"] == "there are fewer"
     assert (data["ok"], data["decided"], data["file"], data["frame"]) == (False, True, "a.blend", 3)
+
+
+def test_findings_are_read_from_json_as_they_were_written() -> None:
+    named = V1.finding(("a\udcffb",), "It is named as nobody would.")
+    found = report(GAP, homeless("Cube"), V2.undecided(("Leg",), "it is open"), named)
+    data = json.loads(dump_json(as_json(found, checked())))
+    assert read_findings(data) == found.findings
 
 
 def test_json_is_json_whatever_was_measured_and_named() -> None:
