@@ -17,7 +17,11 @@ _KEPT_BACK_SHARE = 0.1  # of a limit, which that may take at most
 
 @dataclass(frozen=True, slots=True)
 class Deadline:
-    """``asked`` is set once the user wants to stop. ``max_minutes``: from ``began`` (``time.monotonic``) on, if any."""
+    """What ends a session before its work is done.
+
+    ``asked`` is set once the user wants to stop. ``max_minutes``: the limit, if any, from ``began`` on, a time of
+    ``time.monotonic``.
+    """
 
     asked: threading.Event
     max_minutes: float | None = None

@@ -33,7 +33,7 @@ _SHOWING = LOOKS | {VERIFY}
 
 @dataclass
 class RunTools:
-    """Two threads may call at the same time.
+    """What the roles, the verifier and the run itself call; two threads may do so at the same time.
 
     ``checkpoint``: the worker's that holds the scene as it is. ``is_leaving``: the run has stopped; calls are neither
     journalled nor refused.
