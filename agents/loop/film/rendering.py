@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from agents.loop.film.fitting import FilmSettings
     from agents.loop.running.run import Run
+    from agents.loop.running.tool_client import ToolOutcome
     from agents.loop.task import RunTask
     from agents.plan.scene import RenderSettings
     from agents.roles.planner import Planner
@@ -118,27 +119,34 @@ class LastStage:
 
     def _render(self, number: int) -> RenderResult:
         """Renders the scene as planned (without a plan: by its own settings). Raises NotRendered."""
-        run, plan, film = self._run, self._plan, self._film
+        run, film = self._run, self._film
         run.position.attempt = self._attempt
         minutes = minutes_of(run)
+        if film is not None:
+            film = settled_film(run, film, number, minutes)
+        outcome = run.tools.use(RUNNER, "render", RENDER, self._arguments(film, minutes))
+        if outcome.failed:
+            raise NotRendered(f"The scene could not be rendered: {outcome.text}")
+        return self._kept(number, outcome, film)
+
+    def _arguments(self, film: FilmSettings | None, minutes: float) -> dict[str, Any]:
+        """What ``blender_render`` is asked: what the plan says, but for what a film is fitted to."""
+        plan = self._plan
         asked: dict[str, Any] = {"kind": plan.kind if plan else "still", "time_budget": minutes * 60}
         if plan is not None:
             width, height = plan.resolution
-            asked |= asked_of(plan) | {
-                "samples": run.film_limits.samples or plan.samples,
-                "width": width,
-                "height": height,
-            }
+            samples = self._run.film_limits.samples or plan.samples
+            asked |= asked_of(plan) | {"samples": samples, "width": width, "height": height}
         if film is not None:
-            film = settled_film(run, film, number, minutes)
             asked |= {"samples": film.samples, "width": film.width, "height": film.height}
         if self._task.plan is not None and asked["kind"] == "animation":
             begun = sorted({phase.start for phase in self._task.plan.motion.phases})
             asked["telling"] = begun[:_MOST_TELLING]
-        outcome = run.tools.use(RUNNER, "render", RENDER, asked)
-        if outcome.failed:
-            raise NotRendered(f"The scene could not be rendered: {outcome.text}")
-        data = outcome.data
+        return asked
+
+    def _kept(self, number: int, outcome: ToolOutcome, film: FilmSettings | None) -> RenderResult:
+        """Puts what was rendered into the run's folder, and journals it."""
+        run, data = self._run, outcome.data
         moving = data["kind"] == "animation"
         made = Path(data["video"]["path"] if moving and data.get("video") else data["path"])
         frames = tuple(sorted(Path(data["path"]).glob("*.png"))) if moving else (made,)
