@@ -24,9 +24,6 @@ FORM_PATH, FORM_SHORT, FORM_NAME, FORM_LABEL, FORM_TOPIC = range(5)
 
 # What is asked of a truth value.
 TEST_ON, TEST_OFF = "on", "off"
-# What a setting is where what it depends on is otherwise: Blender's panels grey it out, or do not show it; or it has no
-# effect, as was tried.
-Otherwise = Literal["greyed", "hidden", "idle"]
 
 
 class Mark(IntFlag):
@@ -160,7 +157,7 @@ CREATE TABLE use_counts (path TEXT PRIMARY KEY, uses INTEGER NOT NULL, files INT
 
 -- What a setting (gate) must be, as text: on, 'SUN' or 'SPOT'. Panels in Blender's own scripts ask it wherever they let
 -- a property be set, or offer an operator; or it was tried when the property has an effect. Of the rows of one clause
--- any is enough, all clauses must hold. otherwise: see Otherwise.
+-- any is enough, all clauses must hold. otherwise: see records.Otherwise.
 CREATE TABLE setting_conditions (
     path TEXT NOT NULL, clause INTEGER NOT NULL, gate TEXT NOT NULL, test TEXT NOT NULL, otherwise TEXT NOT NULL,
     PRIMARY KEY (path, clause, gate, test)

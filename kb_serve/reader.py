@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Sequence
     from pathlib import Path
 
-    from kb_build.schema import Otherwise
+    from kb_build.symbols.records import Otherwise
 
 _Record = TypeVar("_Record")
 _Value = TypeVar("_Value")

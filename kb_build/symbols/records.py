@@ -18,8 +18,6 @@ from kb_build.symbols.taken import NEVER, Taken
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from kb_build.schema import Otherwise
-
 Scalar = str | int | float | bool | None
 Default = Scalar | list[Any]
 
@@ -449,6 +447,11 @@ class Page:
     def content_hash(self) -> str:
         """SHA-256 of the text with its white space folded: equal for equal content, whatever the layout."""
         return hashlib.sha256(" ".join(self.text.split()).encode(errors="replace")).hexdigest()
+
+
+# What a setting is where what it depends on is otherwise: Blender's panels grey it out, or do not show it; or it has no
+# effect, as it was tried.
+Otherwise = Literal["greyed", "hidden", "idle"]
 
 
 class SettingCondition(NamedTuple):

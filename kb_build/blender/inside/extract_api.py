@@ -37,9 +37,10 @@ from . import (
     windowless,
 )
 from .apart import Beside, can_work_apart
-from .instances import context_modes, evaluated, idle, limits, new_things, own_names, pointer_fillers, startup
+from .instances import context_modes, new_things, own_names, pointer_fillers, startup
 from .instances.neighbours import Neighbours
 from .instances.observer import Observer
+from .instances.tried import evaluated, idle, limits
 from .wire import Writer
 
 INVERTED = re.compile(r"\.prop\(\w+, ['\"](\w+)['\"][^()\n]*invert_checkbox=True")
