@@ -216,18 +216,27 @@ def _costs(run_state: RunState) -> list[RenderableType]:
     rows = costs_by_role(run_state)
     if not rows:
         return []
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("Role", no_wrap=True)
-    for heading in ("Calls", "Pictures", *KINDS.values(), "Cost"):
-        table.add_column(heading, justify="right", min_width=max(map(len, heading.split())))
-    for row in rows:
-        kinds = [(getattr(row.usage, kind), row.dollars[kind]) for kind in KINDS]
-        table.add_row(
-            Text(shortened(format_role(row.role) or "all", 20), "" if row.role else "bold"),
-            *(Text(format_count(number)) for number in (row.calls, row.pictures)),
-            *(Text(f"{format_count(tokens)} {format_money(dollars)}") for tokens, dollars in kinds),
-            Text(format_money(row.cost) + (f" + {row.unpriced} unpriced" if row.unpriced else "")),
+    headings = ("Calls", "Pictures", *KINDS.values(), "Cost")
+    numbers = [
+        (
+            *map(format_count, (row.calls, row.pictures)),
+            *(
+                f"{format_count(getattr(row.usage, kind))} {format_money(row.dollars[kind])}"
+                for kind in KINDS
+            ),
+            format_money(row.cost) + (f" + {row.unpriced} unpriced" if row.unpriced else ""),
         )
+        for row in rows
+    ]
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
+    table.add_column("Role", no_wrap=True)
+    for heading, *cells in zip(headings, *numbers, strict=True):
+        # Between words it may break, where the terminal is narrow.
+        widest = max(len(word) for cell in (heading, *cells) for word in cell.split())
+        table.add_column(heading, justify="right", min_width=widest)
+    for row, cells in zip(rows, numbers, strict=True):
+        role = Text(shortened(format_role(row.role) or "all", 20), "" if row.role else "bold")
+        table.add_row(role, *map(Text, cells))
     return [Text(), table]
 
 

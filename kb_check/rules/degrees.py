@@ -41,7 +41,7 @@ _ARGUMENTS = {
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for path, value in _angles(script):
+    for path, value, is_taken in _angles(script):
         parts = items(script, value) or [value]
         known = {part: found for part in parts if (found := number(script, part)) is not None}
         turned = [part for part, found in known.items() if _is_degrees(found)]
@@ -51,25 +51,26 @@ def _check(script: Script) -> Iterator[Finding]:
         yield Finding(
             RULE.id, "warning", script.span(value),
             f"`{path}` is in radians: {first:g} is {_turns(first)}. Write `math.radians({first:g})`.", path, (),
-            _in_radians(script, turned),
+            _in_radians(script, turned) if is_taken else None,
         )  # fmt: skip
 
 
-def _angles(script: Script) -> Iterator[tuple[str, ast.expr]]:
-    """What takes an angle, and the value that it is given."""
+def _angles(script: Script) -> Iterator[tuple[str, ast.expr, bool]]:
+    """What takes an angle, the value that it is given, and whether it takes as many numbers."""
     for given in given_values(script):
         if all(_is_angle(script, taker, given.node) for taker in given.takers):
-            yield given.takers[0].path, given.node
+            is_one = items(script, given.node) is None
+            yield given.takers[0].path, given.node, not (is_one and any(one.sizes for one in given.takers))
     for node in script.all(ast.Assign):
         match node.targets:
             case [ast.Subscript(value=owner)] if script.class_of(owner) == _EULER:
-                yield _EULER, node.value
+                yield _EULER, node.value, True
             case _:
                 pass
     for call in script.all(ast.Call):
         place = _ARGUMENTS.get(callee_path(script, call), -1)
         if 0 <= place < len(call.args):
-            yield callee_path(script, call), call.args[place]
+            yield callee_path(script, call), call.args[place], True
 
 
 def _is_angle(script: Script, taker: Taker, node: ast.expr) -> bool:
@@ -79,7 +80,7 @@ def _is_angle(script: Script, taker: Taker, node: ast.expr) -> bool:
     if taker.kind != "float" or taker.unit != "ROTATION":
         return False
     values = [number(script, part) or 0 for part in items(script, node) or [node]]
-    low, high = taker.hard_min, taker.hard_max
+    low, high = taker.kept_ends
     return (low is None or min(values, default=0) >= low) and (high is None or max(values, default=0) <= high)
 
 

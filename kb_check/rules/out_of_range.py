@@ -18,7 +18,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.records import STOPS, UNBOUNDED
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
 from kb_check.syntax.literals import items, number
@@ -72,7 +71,7 @@ def _judged(script: Script, taker: Taker, node: ast.expr) -> Iterator[Finding]:
     value = number(script, node)
     if value is None or (taker.kind == "int" and (isinstance(value, float) or abs(value) >= _LONGEST_INT)):
         return
-    low, high = _kept_ends(taker)
+    low, high = taker.kept_ends
     limit = low if low is not None and value < low - _slack(low) else None
     if high is not None and value > high + _slack(high):
         limit = high
@@ -87,17 +86,6 @@ def _judged(script: Script, taker: Taker, node: ast.expr) -> Iterator[Finding]:
         f"`{taker.path}` holds {start} … {end}: {value:g} becomes {kept}.{_advice(taker, value)}", taker.path, (),
         Fix(f"Write {kept}", (Edit(span, kept),)) if literal and not _advice(taker, value) else None,
     )  # fmt: skip
-
-
-def _kept_ends(taker: Taker) -> tuple[float | None, float | None]:
-    """The ends of a range that Blender keeps to, as tried: beyond the others a value stays, or stops elsewhere."""
-    if taker.is_parameter:
-        return taker.hard_min, taker.hard_max
-    others = {
-        *taker.symbol.flagged(UNBOUNDED),
-        *(stop.partition("=")[0] for stop in taker.symbol.flagged(STOPS)),
-    }
-    return None if "min" in others else taker.hard_min, None if "max" in others else taker.hard_max
 
 
 def _advice(taker: Taker, value: float) -> str:

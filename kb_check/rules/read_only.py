@@ -117,7 +117,8 @@ def _locked(script: Script, row: Resolution, symbols: list[Symbol | None]) -> It
     """
     settings = {freed_by(symbol) if symbol else "" for symbol in symbols}
     setting = settings.pop() if len(settings) == 1 else ""
-    if setting and setting.partition(" ")[0] not in named_words(script):
+    names = _names_of(script, symbols[0], setting.partition(" ")[0])
+    if setting and not names & named_words(script):
         path = next(symbol.path for symbol in symbols if symbol)
         told = f"`{path}` cannot be assigned before `{setting}`: a new one has it otherwise."
         yield Finding(RULE.id, "warning", script.name_span(row.node), told, path)
@@ -125,6 +126,13 @@ def _locked(script: Script, row: Resolution, symbols: list[Symbol | None]) -> It
         path = next(symbol.path for symbol in symbols if symbol)
         told = f"`{path}` cannot be assigned here, after `{kept}`: write `{setting}` before."
         yield Finding(RULE.id, "error", script.name_span(row.node), told, path)
+
+
+def _names_of(script: Script, locked: Symbol | None, setting: str) -> set[str]:
+    """The names by which a setting of the same class is reached: some have two, ``auto_texspace``."""
+    members = list(script.api.symbols.members(locked.owner)) if locked else []
+    told = {one.description for one in members if one.name == setting and one.type == "boolean"}
+    return {setting} | {one.name for one in members if one.type == "boolean" and one.description in told}
 
 
 def _kept_locked(script: Script, row: Resolution, locked: Symbol | None, setting: str) -> str:

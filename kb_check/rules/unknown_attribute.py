@@ -46,6 +46,7 @@ from kb_check.syntax.bindings import bindings
 from kb_check.syntax.words import words_in_texts
 from kb_serve.recognise.names.elements import Elsewhere, elsewhere
 from kb_serve.recognise.names.holders import by_what_holds_it, of_collection
+from kb_serve.recognise.names.members_within import members_within
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -89,9 +90,16 @@ def _elsewhere(script: Script, row: Resolution, owner: str, lacking: Lacking) ->
     reader = script.names.reader
     if other := elsewhere(row.missing[0], row.value, reader):
         return [other]
-    if lacking.replacement or row.kind != "attribute":
+    if lacking.replacement:
         return []
-    return of_collection(row.missing[0], row.value, reader) or by_what_holds_it(owner, row.value, reader)
+    found = [] if row.kind != "attribute" else of_collection(row.missing[0], row.value, reader)
+    if not found and row.kind == "attribute":
+        found = by_what_holds_it(owner, row.value, reader)
+    return found or [
+        Elsewhere(one.member.path, one.note)
+        for one in members_within(owner, row.value, reader)
+        if row.kind != "store" or not one.member.is_read_only
+    ]
 
 
 def _of_sockets(script: Script) -> Iterator[Finding]:

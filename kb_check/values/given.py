@@ -11,7 +11,7 @@ from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, members
 from kb_build.symbols.api_names import STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import plain_path
-from kb_build.symbols.records import ENUM_FLAG, NEVER_NONE, READ_ONLY, SCALAR_TYPES
+from kb_build.symbols.records import ENUM_FLAG, NEVER_NONE, READ_ONLY, SCALAR_TYPES, STOPS, UNBOUNDED
 from kb_check.calls.sites import calls_not_ready_for
 from kb_check.nodes.shown_sockets import socket_classes
 from kb_check.registered.classes import own_classes
@@ -56,6 +56,17 @@ class Taker:
     hard_max: float | None = None
     is_parameter: bool = False
     is_operator: bool = False
+
+    @property
+    def kept_ends(self) -> tuple[float | None, float | None]:
+        """The ends of a range that Blender keeps to, as tried: beyond the others a value stays, or stops elsewhere."""
+        if self.is_parameter:
+            return self.hard_min, self.hard_max
+        others = {
+            *self.symbol.flagged(UNBOUNDED),
+            *(stop.partition("=")[0] for stop in self.symbol.flagged(STOPS)),
+        }
+        return None if "min" in others else self.hard_min, None if "max" in others else self.hard_max
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,6 +24,7 @@ _FEW = 3
 _OF_OTHER_USE = frozenset({"EffectorWeights", "BakeSettings", "VolumeDisplay", "ParticleSettingsTextureSlot"})
 # A tree, of which every node is called, placed and drawn: of its nodes only these are asked of what it belongs to.
 _TREE, _SOCKETS = "NodeTree", frozenset({"inputs", "outputs"})
+_ANIMATION = "AnimData"  # every data-block has one, the elements of which are no part of what it shows
 _COUNTS = 1.0  # the weight from which on the data of an object are likely meant by a member of theirs
 
 
@@ -62,6 +63,8 @@ def members_within(owner: str, name: str, reader: BaseReader, *, on_new: bool = 
     if not found and not on_new:
         for one in pointers:
             if not one.is_read_only or (one.target.endswith(_TREE) and name not in _SOCKETS):
+                continue
+            if one.target == _ANIMATION:
                 continue
             beyond = members_of(f"{TYPES}{one.target}", reader)
             for member, note in _of_collections(beyond, name, reader, f".{one.name}"):

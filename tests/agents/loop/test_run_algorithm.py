@@ -185,15 +185,18 @@ def test_what_the_plan_states_wrongly_is_withdrawn_once_mending_was_tried(
     assert later["ok"], later["findings"]
     assert {one["rule"]: one["severity"] for one in later["findings"]}["R5"] == "soft"
     heard = [words_of(request) for request in played.requests if whose(request) == ("planner", "camera")]
-    assert any("Withdrawn by the planner, and not counted: R3 " in words for words in heard)
+    assert any(
+        "Withdrawn by the planner, and not counted, though told as hard below: R3 " in words
+        for words in heard
+    )
     *_, told = [request for request in played.requests if whose(request) == ("coder", "camera")]
     assert (
         "find it broken: R5 Crate; R3 Crate. It is measured all the same, and not to be mended."
         in words_of(told)
     )
     assert (
-        "Withdrawn by the planner, and not counted: R3 Crate, Crate root; R5 Crate, Floor (no other is hard)."
-        in last_words(told)
+        "Withdrawn by the planner, and not counted, though told as hard below: "
+        "R3 Crate, Crate root; R5 Crate, Floor (no other is hard)." in last_words(told)
     )
 
 
@@ -205,7 +208,10 @@ def test_a_part_of_what_a_rule_finds_is_withdrawn() -> None:
     one = Withdrawal(rule="T7", objects=("Bucket",), says="'bucket waits'")
     findings, told = as_soft([waits, rests], [one])
     assert [finding.severity for finding in findings] == ["soft", "hard"]
-    assert told == "Withdrawn by the planner, and not counted: T7 Bucket (1 hard beside it)."
+    assert (
+        told
+        == "Withdrawn by the planner, and not counted, though told as hard below: T7 Bucket (1 hard beside it)."
+    )
     assert str(one) == "T7 Bucket ('bucket waits')"
 
 

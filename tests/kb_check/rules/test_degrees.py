@@ -55,6 +55,19 @@ def test_degrees_are_kept_as_radians(check: Check, tmp_path: Path) -> None:
     assert {round(float(after), 4) for _, _, after in kept[place:]} == {1.5708}
 
 
+def test_degrees_beyond_a_range_that_is_not_kept_to(check: Check, tmp_path: Path) -> None:
+    lines = ["import bpy", "camera = bpy.data.cameras.new('a')", "camera.angle = 60"]
+    *_, (error, _, lens) = run_statements(tmp_path, lines, {2: "camera.lens"})
+    assert (error, float(lens) < 0) == ("", True)
+    [found] = check("degrees", "\n".join(lines))
+    assert found.fix is not None
+
+
+def test_one_number_for_three_is_not_mended(check: Check) -> None:
+    [found] = check("degrees", "import bpy\nbpy.data.objects.new('a', None).rotation_euler = 90")
+    assert found.fix is None
+
+
 def test_functions_that_take_radians(check: Check) -> None:
     code = (
         "import mathutils\n"

@@ -21,7 +21,7 @@ _BY_NAME = {
     "image": "bpy.data.images[image] if image in bpy.data.images else None",
     "obj": "bpy.data.objects.new(obj, None)",
     "mesh": "bpy.data.meshes.new(name=mesh)",
-    "action": "setattr(bpy.data, 'x', action) if action is None else bpy.data.actions.get(action)",
+    "action": "print(action) if action is None else bpy.data.actions.get(action)",
     "armature": "[bpy.data.armatures[armature] for each in (1,) if type(armature) is str]",
 }
 

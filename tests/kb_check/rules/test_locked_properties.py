@@ -18,6 +18,7 @@ _SCRIPTS = {
     f"{_MESH}mesh.texspace_size = (1, 1, 1)": "warning",
     f"{_LAYER}layer.channel_color = (1, 0, 0)": "error",
     f"{_MESH}mesh.use_auto_texspace = False\nmesh.texspace_size = (1, 1, 1)": "",
+    f"{_MESH}mesh.auto_texspace = False\nmesh.texspace_size = (1, 1, 1)": "",  # another name of it
     f"{_MESH}mesh.use_auto_texspace = True": "",
     f"{_MESH}mesh.use_auto_texspace = True\nmesh.texspace_location = (0, 0, 0)": "error",
     f"{_MESH}mesh.use_auto_texspace = True\nmesh.use_auto_texspace = False\nmesh.texspace_size = (1, 1, 1)": "",

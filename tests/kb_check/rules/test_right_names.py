@@ -28,6 +28,34 @@ def _sure(checker: Checker, code: str) -> list[list[str]]:
     return [texts for _, texts, sure in _fixes(checker, code) if sure]
 
 
+@pytest.mark.parametrize(
+    ("code", "has_it", "told"),
+    [
+        ("scene.fps = 30", "RenderSettings.fps", "Its `.render` has it: `.render.fps`"),
+        ("scene.samples = 8", "CyclesRenderSettings.samples", "Its `.cycles` has it"),
+        ("light.energy = 100", "PointLight.energy", "Its `.data` has it"),
+        ("cam.data.use_dof = True", "CameraDOFSettings.use_dof", "Its `.dof` has it"),
+        ("cam.data.location = (1, 2, 3)", "Object.location", "The object that has such data has it: `obj.location`"),
+        ("mesh.modifiers.new('x', 'ARRAY')", "Object.modifiers", "The object that has such data has it"),
+        ("cloth.settings.use_self_collision = True", "ClothCollisionSettings.use_self_collision",
+         "`.collision_settings`, which stands beside this `.settings`, has it"),
+        ("scene.render.frame_start = 1", "Scene.frame_start", "`Scene` has it"),
+    ],
+)  # fmt: skip
+def test_what_another_part_has_is_told(rule_checker: Checker, code: str, has_it: str, told: str) -> None:
+    before = """\
+import bpy
+scene = bpy.context.scene
+light = bpy.data.objects.new("l", bpy.data.lights.new("l", "POINT"))
+cam = bpy.data.objects.new("c", bpy.data.cameras.new("c"))
+mesh = bpy.data.meshes.new("m")
+cloth = bpy.data.objects.new("m", mesh).modifiers.new("c", "CLOTH")
+"""
+    [found] = rule_checker.check(before + code, rules=["unknown-attribute"])
+    assert told in found.message
+    assert f"bpy.types.{has_it}" in found.instead
+
+
 def test_no_fix_of_a_comparison_is_sure(rule_checker: Checker) -> None:
     code = "if bpy.context.object.type == 'GPENCIL':\n    pass"
     assert [(texts, sure) for _, texts, sure in _fixes(rule_checker, code)] == [(["'GREASEPENCIL'"], False)]

@@ -57,6 +57,12 @@ class Piece:
         return [self.matrix @ Vector(flat[at : at + 3]) for at in range(0, len(flat), 3 * step)]
 
 
+def _is_particle(instance):
+    """Whether an instance is a particle shown as one object: renders show it where they do not show that object."""
+    system = instance.particle_system
+    return system is not None and system.settings.render_type == "OBJECT"
+
+
 class SceneCopy:
     """``pieces``, and the names of what is missing: ``broken`` (with why), ``hidden`` in the viewport, ``unrendered``,
     ``empty``; ``left_out`` counts instances, of the objects ``templates``; ``gases``: the domains whose gas is drawn.
@@ -111,7 +117,7 @@ class SceneCopy:
                 continue
             if instance.is_instance:
                 self.templates.add(obj.original.name)
-                if rendered is not None and obj.original.hide_render:
+                if rendered is not None and obj.original.hide_render and not _is_particle(instance):
                     continue
                 count += 1
                 if count % step:

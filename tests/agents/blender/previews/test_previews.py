@@ -283,6 +283,22 @@ def test_one_broken_object_does_not_hide_others(session: LiveSession) -> None:
     assert "without its modifiers" in " ".join(Views(session, "mesh", "Shut").data["notes"])
 
 
+def test_particles_are_drawn_as_renders_show_them(session: LiveSession) -> None:
+    shower = """
+leaf = box("Leaf", (50, 0, 0), (0.5, 0.5, 0.5))
+leaf.hide_render = True
+tap = box("Tap", (0, 0, 0), (4, 4, 4))
+tap.show_instancer_for_render = False
+made = tap.modifiers.new("Shower", "PARTICLE_SYSTEM").particle_system.settings
+made.count, made.frame_start, made.frame_end, made.physics_type = 200, 1, 1, "NO"
+made.render_type, made.instance_object, made.particle_size = "OBJECT", leaf, 1
+bpy.context.scene.frame_set(2)
+"""
+    build(session, shower)
+    views = Views(session, "scene")
+    assert views.extent == pytest.approx([4.5, 4.5, 4.5], abs=0.5)
+
+
 @pytest.mark.parametrize(
     "size",
     [1e-6, pytest.param(1e-3, marks=pytest.mark.whole), pytest.param(1e5, marks=pytest.mark.whole), 1e7],
