@@ -30,7 +30,7 @@ class Tolerances:
     dimension_share: float = _tolerance(
         0.10, "", "largest deviation of an extent, as a share of the planned one"
     )
-    sheet: float = _tolerance(0.02, "m", "largest planned thickness of what may be a flat sheet of faces")
+    sheet: float = _tolerance(0.02, "m", "planned thickness that a flat sheet may have")
     place: float = _tolerance(0.01, "m", "largest distance of a root from its planned position")
     place_share: float = _tolerance(0.05, "", "… or this share of the object's diagonal, if that is more")
     turn: float = _tolerance(5.0, "°", "largest angle between a root's rotation and the planned one")

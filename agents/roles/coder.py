@@ -27,7 +27,7 @@ _TOLD_IN: dict[str, tuple[Stage, ...]] = {
     "blender_uv_preview": ("uv",),
     "blender_material_preview": ("texture", "camera", "light"),
     "blender_trial": ("deformation_setup", "motion"),
-    "blender_bake": ("deformation_setup", "motion", "render"),
+    "blender_bake": ("deformation_setup", "motion", "camera", "light", "render"),
     "blender_motion_sheet_preview": ("deformation_setup", "motion", "camera", "render"),
     "blender_object_preview": ("modeling", "uv", "texture", "deformation_setup", "render"),
     "blender_render": ("texture", "camera", "light", "render"),

@@ -138,7 +138,7 @@ def read(text: str, reader: AnswerReader[T]) -> T:
 def complaint(turn: Turn, misfit: Misfit) -> Message:
     """The message that tells a model what is wrong with its ``turn``, and to send it again."""
     listed = "\n".join(f"- {problem}" for problem in misfit.problems)
-    words = f"Your answer is not the requested JSON:\n{listed}\nSend the whole JSON again, corrected."
+    words = f"Your answer cannot be taken as it is:\n{listed}\nSend the whole JSON again, corrected."
     refused = [ToolResult(call.id, (Text(_LATER),), failed=True) for call in turn.calls]
     return user(*refused, words)
 

@@ -101,12 +101,12 @@ def _plans(params: Params) -> Reply:
 
 
 def _tactics(params: Params) -> Reply:
-    stage = "modeling" if "not the requested JSON" in last_words(params) else "uv"
+    stage = "modeling" if "cannot be taken as it is" in last_words(params) else "uv"
     return reply({"stage": stage, "goal": "Build it."})
 
 
 def _decides(params: Params) -> Reply:
-    if "not the requested JSON" in last_words(params):
+    if "cannot be taken as it is" in last_words(params):
         return reply(RETRY)
     return reply({"transition": "retry", "reason": "Something is wrong."})  # but what?
 

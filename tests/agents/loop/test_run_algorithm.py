@@ -87,7 +87,7 @@ def test_a_decision_to_plan_anew_may_bring_the_plan(play: Callable[..., Played])
     asked = [last_words(one) for one in of_role(played, "planner", "modeling")]
     begun = [words for words in asked if "The stage modeling begins." in words]
     assert ["The last plan did not do" in words for words in begun] == [False, True, True]
-    assert not any("not the requested JSON" in words for words in asked), (
+    assert not any("cannot be taken as it is" in words for words in asked), (
         "without its plan, the decision fits"
     )
     goals = [row["plan"]["goal"] for row in played.of("tactic")]

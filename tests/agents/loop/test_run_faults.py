@@ -52,7 +52,7 @@ def test_a_run_with_all_these_troubles_ends_well(troubled: Played) -> None:
 
 def test_an_answer_without_json_is_sent_back(troubled: Played) -> None:
     second = next(one for one in of_role(troubled, "planner", "") if turn_of(one) == 1)
-    assert "Your answer is not the requested JSON" in last_words(second)
+    assert "Your answer cannot be taken as it is" in last_words(second)
     assert "There is no JSON in the answer." in last_words(second)
 
 
@@ -73,7 +73,7 @@ def test_a_retry_that_does_not_say_what_to_mend_is_sent_back(troubled: Played) -
 
 def test_what_did_not_fit_is_not_kept_in_the_conversation(troubled: Played) -> None:
     last = [one for one in troubled.requests if whose(one)[0] == "planner"][-1]
-    assert "not the requested JSON" not in words_of(last)
+    assert "cannot be taken as it is" not in words_of(last)
 
 
 def test_an_unknown_tool_is_told_with_those_that_there_are(troubled: Played) -> None:

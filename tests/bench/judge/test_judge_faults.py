@@ -83,7 +83,7 @@ def test_an_answer_that_is_not_json_goes_back(api, frames, text):
     assert judged(api, frames).score == 0.9
     assert api.stages() == ["items", "verdicts", "verdicts"]
     words, pictures = api.question(2)
-    assert "Your answer is not the requested JSON" in words
+    assert "Your answer cannot be taken as it is" in words
     assert len(pictures) == 5
 
 
