@@ -9,6 +9,7 @@ import tempfile
 import threading
 import time
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from agents.blender.supervisor import Supervisor
     from agents.blender.tools.base import Call
     from agents.plan.scene import ScenePlan
+    from agents.plan.tactical import Withdrawal
     from agents.protocol.findings import Report
     from agents.protocol.report.summary import VerificationScope
     from agents.protocol.rule import Rule
@@ -112,7 +114,8 @@ def _verify(
     if image is not None:
         _check_image(image)
     try:
-        report, checked, fault = _run(scene, rules, plan, choices)
+        withdrawn = _withdrawn(scene) if plan is not None and choices["plan"] is None else []
+        report, checked, fault = _run(scene, rules, plan, choices, withdrawn)
     except BlenderError as error:
         raise _CannotCheckError(f"{scene} could not be checked: {error}") from error
     _print(report, checked, form, logs)
@@ -169,6 +172,18 @@ def _plan_of_run(folder: Path) -> Path | None:
     return path if path.is_file() and (folder / NAME).is_file() else None
 
 
+def _withdrawn(scene: Path) -> list[Withdrawal]:
+    """What the planner took back in the run whose result ``scene`` is, as far as its journal can be read."""
+    from agents.loop.errors import NoRun  # noqa: PLC0415 - only beside a run's result
+    from agents.loop.record.journal import NAME, read_rows  # noqa: PLC0415 - likewise
+    from agents.loop.review.withdrawals import withdrawn_in  # noqa: PLC0415 - likewise
+
+    try:
+        return list(withdrawn_in(read_rows(scene.parent / NAME)))
+    except NoRun:
+        return []
+
+
 def _is_of_an_edit(path: Path) -> bool:
     """Whether a file is the plan of an edit, which tells of no scene."""
     from agents.plan.edit import EditPlan  # noqa: PLC0415 - only beside a run's result
@@ -199,7 +214,11 @@ def _plan(path: Path) -> ScenePlan:
 
 
 def _run(
-    scene: Path, rules: tuple[Rule, ...], plan: ScenePlan | None, choices: dict[str, Any]
+    scene: Path,
+    rules: tuple[Rule, ...],
+    plan: ScenePlan | None,
+    choices: dict[str, Any],
+    withdrawn: list[Withdrawal],
 ) -> tuple[Report, VerificationScope, str]:
     """Checks the scene, and draws the image if one is wanted; gives why that failed, "" if it did not.
 
@@ -223,7 +242,7 @@ def _run(
             ).value
             process = blender.inner_pid
             status.show("Measuring")
-            report = verify_scene(blender, rules, plan, call, plays=True)
+            report = _without(verify_scene(blender, rules, plan, call, plays=True), withdrawn)
             if blender.inner_pid != process:
                 # The new Blender has an empty scene.
                 raise _CannotCheckError(f"{scene} could not be checked: Blender ended while checking it.")
@@ -240,6 +259,16 @@ def _run(
                 status.show("Drawing")
                 fault = _draw(blender, report, call, checked, choices["image"])
     return report, checked, fault
+
+
+def _without(report: Report, withdrawn: list[Withdrawal]) -> Report:
+    """The report with findings about what the run's planner took back as soft ones."""
+    from agents.loop.review.withdrawals import as_soft, format_withdrawn  # noqa: PLC0415 - not for --help
+
+    findings, told = as_soft(report.findings, withdrawn)
+    if not told:
+        return report
+    return replace(report, findings=tuple(findings), remarks=(*report.remarks, format_withdrawn(withdrawn)))
 
 
 @contextmanager

@@ -5,14 +5,24 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from agents.loop.record.events import Withdrew, read_event
+
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from typing import Any
 
     from agents.plan.tactical import Withdrawal
     from agents.protocol.findings import Finding
 
 _TAKEN_BACK = "The planner took back what the plan says where these rules find it broken: {}."
 _NOT_TO_BE_MENDED = "It is measured all the same, and not to be mended."
+
+
+def withdrawn_in(rows: Iterable[Mapping[str, Any]]) -> Iterator[Withdrawal]:
+    """What the planner took back in a run, as its journal has it."""
+    for event in map(read_event, rows):
+        if isinstance(event, Withdrew) and event.decision:
+            yield from event.decision.withdraw
 
 
 def as_soft(findings: Iterable[Finding], withdrawn: Sequence[Withdrawal]) -> tuple[list[Finding], str]:

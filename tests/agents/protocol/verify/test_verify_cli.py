@@ -183,6 +183,20 @@ def test_the_plan_of_the_run_that_made_a_file_is_found(session: LiveSession, tmp
     done = verify(tmp_path, *words)
     assert json.loads(done.stdout)["plan"] == PLAN["title"]
     assert "plan.json, of the run that made the file" in done.stderr
+    (finding,) = [one for one in json.loads(done.stdout)["findings"] if one["rule"] == "R10"]
+    assert finding["severity"] == "hard"
+    withdraw = [{"rule": "R10", "objects": finding["objects"]}]
+    decision = {"transition": "withdraw", "reason": "It hangs.", "withdraw": withdraw}
+    row = {"type": "withdrew", "stage": "modeling", "attempt": 2, "n": 0, "decision": decision}
+    (tmp_path / "journal.jsonl").write_text(json.dumps(row) + "\n")
+    told = json.loads(verify(tmp_path, *words).stdout)
+    assert {one["severity"] for one in told["findings"] if one["rule"] == "R10"} == {"soft"}
+    assert "The planner took back what the plan says" in verify(tmp_path, scene).stdout
+    (tmp_path / "journal.jsonl").write_text("no journal")
+    (again,) = [
+        one for one in json.loads(verify(tmp_path, *words).stdout)["findings"] if one["rule"] == "R10"
+    ]
+    assert again["severity"] == "hard"
     task = {"kind": "modify", "stage": "light", "targets": ["Sun"], "instruction": "Dim it."}
     edit = {"title": "An edit", "tasks": [task], "render": {"kind": "still"}}
     (tmp_path / "plan.json").write_text(json.dumps(edit))
