@@ -8,9 +8,12 @@ rows = obj.modifiers.new("Rows", "ARRAY")
 rows.constant_offset_displace.x = 2  # reported: rows.use_constant_offset is off
 thin = obj.modifiers.new("Thin", "DECIMATE")
 thin.angle_limit = 0.1  # reported: only with thin.decimate_type = 'DISSOLVE'
+lamp = bpy.data.lights.new("Window", "AREA")
+lamp.size_y = 2  # reported: only with lamp.shape = 'RECTANGLE' or 'ELLIPSE'
 ```
 
-Blender's own panels tell which settings have such a switch. Of modifiers it was tried on meshes.
+Blender's own panels tell which settings have such a switch, or are shown with some choice only. Of modifiers it was
+tried on meshes.
 
 Not reported: things that the script did not make itself, which may have the switch on; scripts that name the switch
 anywhere, or set settings by names that they compute; and values that a new thing has anyway.
@@ -19,6 +22,8 @@ anywhere, or set settings by names that they compute; and values that a new thin
 from __future__ import annotations
 
 import ast
+from itertools import groupby
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.flags import usual_default
@@ -33,9 +38,9 @@ from kb_check.script import once_per_script
 from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
-    from kb_build.symbols.records import Symbol
+    from kb_build.symbols.records import SettingCondition, Symbol
     from kb_check.script import Script
 
 
@@ -82,12 +87,30 @@ def _switched_off(script: Script, path: str) -> tuple[str, tuple[str, ...]]:
             "does not turn it on."
         )
         return message, (gate.path,)
-    idle = [row for row in script.names.reader.conditions_of(path) if row.otherwise == "idle"]
-    needs = " or ".join(f"`{last_name(row.gate)}` is {row.test}" for row in idle)
-    message = (
-        f"`{path}` has no effect unless {needs}. A new one has it otherwise, and this script does not set it."
-    )
-    return message, tuple(row.gate for row in idle)
+    conditions = script.names.reader.conditions_of(path)
+    unmet = "A new one has it otherwise, and this script does not set it."
+    if idle := [row for row in conditions if row.otherwise == "idle"]:
+        return f"`{path}` has no effect unless {_told(idle)}. {unmet}", tuple(row.gate for row in idle)
+    for _, rows in groupby(conditions, key=attrgetter("clause")):
+        clause = [*rows]
+        if all(row.otherwise == "hidden" and _is_otherwise(script, path, row) for row in clause):
+            message = f"Blender's panels show `{path}` only if {_told(clause)}. {unmet}"
+            return message, tuple(row.gate for row in clause)
+    return "", ()
+
+
+def _told(rows: Iterable[SettingCondition]) -> str:
+    return " or ".join(f"`{last_name(row.gate)}` is {row.test}" for row in rows)
+
+
+def _is_otherwise(script: Script, path: str, row: SettingCondition) -> bool:
+    """Whether a choice of the same thing surely is another one on every new thing than is asked for."""
+    gate = script.api.symbols.symbol(row.gate)
+    if gate is None or not script.names.reader.descends(path.rpartition(".")[0], gate.owner):
+        return False
+    values = [new.value for new in gate.new_values] or [usual_default(gate)]
+    is_choice = gate.type == "enum" and row.test.startswith("'") and COMPARED in gate.flags
+    return is_choice and not any(repr(value) in row.test for value in values)
 
 
 def _switch(script: Script, path: str) -> Symbol | None:

@@ -43,7 +43,11 @@ class Salvage:
 
 def salvage(code: str) -> Salvage:
     """Leaves out the top-level statements at which Python's parser fails. Bounded; at worst nothing is left."""
-    lines = split_lines(code.replace("\0", "\N{REPLACEMENT CHARACTER}"))
+    # A line that ends in "\r" alone would be one with a blank line behind it.
+    lines = [
+        f"{line[:-1]}\n" if line.endswith("\r") else line
+        for line in split_lines(code.replace("\0", "\N{REPLACEMENT CHARACTER}"))
+    ]
     whole = list(lines)
     lost: list[str] = []
     for _ in range(max(2, min(_MOST_ROUNDS, _MOST_CHARACTERS // max(len(code), 1)))):

@@ -54,6 +54,7 @@ def holds(checker: Checker, data: bytes, name: str = "a.py") -> None:
 @example("")
 @example("\r")
 @example("x\r\ry z")
+@example("\r:\nbpy.ops.mesh.primitive_cube_add(radius=1)")
 @given(random_lines)
 def test_random_code_is_checked(checker: Checker, code: str) -> None:
     holds(checker, code.encode("utf-8", "surrogatepass"))

@@ -137,6 +137,25 @@ SWITCHED_OFF = {
 }
 
 
+# What is set on something new → the choice with which panels show it.
+NOT_SHOWN = {
+    'bpy.data.lights.new("a", "AREA").size_y = 2': "`shape` is 'ELLIPSE' or 'RECTANGLE'",
+    'bpy.data.particles.new("a").instance_object = bpy.data.objects.new("a", None)': "`render_type` is 'OBJECT'",
+    'bpy.data.worlds.new("a").mist_settings.falloff = "LINEAR"': "",
+    'bpy.data.lights.new("a", "AREA").size = 2': "",
+    'lamp = bpy.data.lights.new("a", "AREA")\nlamp.shape = "RECTANGLE"\nlamp.size_y = 2': "",
+    'bpy.data.lights["a"].size_y = 2': "",
+}
+
+
+@pytest.mark.parametrize(("code", "told"), NOT_SHOWN.items())
+def test_settings_that_panels_show_with_another_choice_are_found(check: Check, code: str, told: str) -> None:
+    found = check("switched-off", f"import bpy\n{code}\n")
+    assert [one.message.partition(" only if ")[2].partition(". ")[0] for one in found] == (
+        [told] if told else []
+    )
+
+
 def test_settings_whose_switch_is_off_are_found(rule_checker: Checker, tmp_path: Path) -> None:
     lines = list(SWITCHED_OFF)
     watched = {place + len(MADE): switch for place, switch in enumerate(SWITCHED_OFF.values())}
