@@ -422,7 +422,9 @@ class Drawing(Conditions):
                 if value is None or len(text) > _LONGEST_TEXT:
                     self._bind_unknown(target.id)
                 else:
-                    self.names[target.id] = Held(text, self._bounded(self.truth(value)), self._layout(value))
+                    source = value if isinstance(value, ast.Attribute) else None
+                    truth = self._bounded(self.truth(value))
+                    self.names[target.id] = Held(text, truth, self._layout(value), source)
             case ast.Attribute(attr="active" | "enabled"):
                 self._set(target, None if value is None else self.truth(value))
             case ast.Tuple() | ast.List():

@@ -39,11 +39,15 @@ _CONTEXT = frozenset({"context", "_context"})
 
 @dataclass(frozen=True, slots=True)
 class Held:
-    """What a name holds: the text that it stands for, the condition that its truth is, and a layout's number."""
+    """What a name holds: the text that it stands for, the condition that its truth is, and a layout's number.
+
+    ``source``: the attribute that it is another name of.
+    """
 
     text: str
     truth: Formula
     layout: int | None = None
+    source: ast.Attribute | None = field(default=None, compare=False)
 
 
 @dataclass(slots=True)
@@ -168,7 +172,7 @@ class Conditions:
         return Question(text, self.text(node.value), paths, relation)
 
     def _comparison(self, node: ast.Compare, operator: ast.cmpop, right: ast.expr) -> Formula:
-        left = node.left.value if isinstance(node.left, ast.NamedExpr) else node.left
+        left = self._meant(node.left.value if isinstance(node.left, ast.NamedExpr) else node.left)
         is_not = isinstance(operator, (ast.NotEq, ast.IsNot, ast.NotIn))
         values = self._values(right)
         if not values or isinstance(operator, (ast.In, ast.NotIn)) == isinstance(right, ast.Constant):
@@ -192,6 +196,12 @@ class Conditions:
         else:
             return self._not_understood(node)
         return negated(held) if is_not else held
+
+    def _meant(self, node: ast.expr) -> ast.expr:
+        """The attribute that a name is another name of, while that is still the same."""
+        held = self.names.get(node.id) if isinstance(node, ast.Name) else None
+        source = held.source if held else None
+        return source if source and held and self.text(source) == held.text else node
 
     def _not_understood(self, node: ast.expr) -> Formula:
         return Answer(Question(self.text(node)), _YES)

@@ -109,8 +109,9 @@ def _is_otherwise(script: Script, path: str, row: SettingCondition) -> bool:
     if gate is None or not script.names.reader.descends(path.rpartition(".")[0], gate.owner):
         return False
     values = [new.value for new in gate.new_values] or [usual_default(gate)]
-    is_choice = gate.type == "enum" and row.test.startswith("'") and COMPARED in gate.flags
-    return is_choice and not any(repr(value) in row.test for value in values)
+    is_choice = gate.type == "enum" and "'" in row.test and COMPARED in gate.flags
+    is_wanted = row.test.startswith("'")  # else it says what the choice must not be
+    return is_choice and all((repr(value) in row.test) != is_wanted for value in values)
 
 
 def _switch(script: Script, path: str) -> Symbol | None:

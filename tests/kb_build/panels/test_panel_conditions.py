@@ -377,6 +377,22 @@ def test_what_may_be_another_class_is_not_told_of_each(symbols: BaseSymbols) -> 
 
 
 @pytest.mark.parametrize(
+    ("before", "expected"),
+    [
+        ("mode = ob.rotation_mode", ["hidden unless rotation_mode 'QUATERNION'"]),
+        # By then it may be another thing's, or another value.
+        ("mode = ob.rotation_mode\nob = context.object.parent", []),
+        ("mode = ob.rotation_mode\nif ob.parent:\n    mode = 'QUATERNION'", []),
+    ],
+)
+def test_a_name_of_a_choice_is_read_as_that(symbols: BaseSymbols, before: str, expected: list[str]) -> None:
+    body = (
+        f"ob = context.object\n{before}\nif mode == 'QUATERNION':\n    layout.prop(ob, 'rotation_quaternion')"
+    )
+    assert asked(symbols, panel(body), of="Object.rotation_quaternion") == expected
+
+
+@pytest.mark.parametrize(
     ("of", "expected"),
     [
         ("LimitLocationConstraint.min_x", ["greyed unless use_min_x on"]),

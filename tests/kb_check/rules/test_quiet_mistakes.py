@@ -141,6 +141,9 @@ SWITCHED_OFF = {
 NOT_SHOWN = {
     'bpy.data.lights.new("a", "AREA").size_y = 2': "`shape` is 'ELLIPSE' or 'RECTANGLE'",
     'bpy.data.particles.new("a").instance_object = bpy.data.objects.new("a", None)': "`render_type` is 'OBJECT'",
+    'bpy.data.objects.new("a", None).rotation_quaternion = (0, 1, 0, 0)': "`rotation_mode` is 'QUATERNION'",
+    'bpy.data.objects.new("a", None).rotation_euler = (0, 1, 0)': "",
+    'ob = bpy.data.objects.new("a", None)\nob.rotation_mode = "QUATERNION"\nob.rotation_quaternion = (0, 1, 0, 0)': "",
     'bpy.data.worlds.new("a").mist_settings.falloff = "LINEAR"': "",
     'bpy.data.lights.new("a", "AREA").size = 2': "",
     'lamp = bpy.data.lights.new("a", "AREA")\nlamp.shape = "RECTANGLE"\nlamp.size_y = 2': "",
