@@ -60,25 +60,15 @@ def gatings_in(places: Iterable[Place], symbols: Symbols) -> dict[str, Gating]:
             if len(place.symbols) > 1 and path.startswith(f"{TYPES}Space"):
                 found[path] = _UNASKED  # a panel is of one editor, and which one is not known
                 continue
-            if len(place.symbols) > 1 and not _has_all_asked(path.rpartition(".")[0], place, symbols):
-                continue
             gates = _Gates(place, path, symbols)
+            if len(place.symbols) > 1 and not gates.have_all_asked(place.active):
+                continue
             shown = consequences(place.shown, gates.of)
             if shown is None:
                 continue  # it is never there
             active = consequences(place.active, gates.of)
             _add(found, path, Gating(shown, _NEVER if active is None else active))
     return found
-
-
-def _has_all_asked(cls: str, place: Place, symbols: Symbols) -> bool:
-    """Whether a class has what the place asks of the thing whose property it shows, which may be of several classes."""
-    lineage = [*_bases(cls, symbols)]
-    return all(
-        _member(question.text[len(place.owner) :], lineage, symbols)
-        for question in _surely_asked(place.active)
-        if question.symbols and question.owner == place.owner
-    )
 
 
 def _surely_asked(formula: Formula) -> Iterator[Question]:
@@ -163,6 +153,14 @@ class _Gates:
         if len(question.symbols) > 1:  # which of several other things it is, is not known
             found = [path for path in found if path.rpartition(".")[0] in self._lineage]
         return found[0] if len(found) == 1 else ""
+
+    def have_all_asked(self, formula: Formula) -> bool:
+        """Whether the property's class has all that is surely asked of the thing, which may be of several classes."""
+        return all(
+            _member(question.text[len(self._owner) :], self._lineage, self._symbols)
+            for question in _surely_asked(formula)
+            if question.symbols and question.owner == self._owner
+        )
 
     def _of_unknown(self, question: Question) -> str:
         """``.name`` of a property of the same object, whose class is not known either."""

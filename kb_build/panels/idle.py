@@ -7,16 +7,14 @@ from operator import itemgetter
 from typing import TYPE_CHECKING
 
 from kb_build.schema import TEST_OFF, TEST_ON
+from kb_build.symbols.lines import either
 from kb_build.symbols.records import SettingCondition
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-Need = tuple[
-    str, bool | str
-]  # (setting of the same thing, the value with which it is enough); "" for any text
-
-NOT_EMPTY = "not empty"
+# (setting of the same thing, the value with which it is enough; an empty text for any text)
+Need = tuple[str, bool | str]
 
 
 def idle_conditions(needs: Mapping[str, Sequence[Need]]) -> Iterator[SettingCondition]:
@@ -30,10 +28,9 @@ def idle_conditions(needs: Mapping[str, Sequence[Need]]) -> Iterator[SettingCond
 def _test(values: Sequence[bool | str]) -> str:
     if isinstance(values[0], bool):
         return TEST_ON if values[0] else TEST_OFF
-    return any_of(map(repr, values)) if values[0] else NOT_EMPTY
+    return any_of(map(repr, values)) if values[0] else "not empty"
 
 
 def any_of(values: Iterable[str]) -> str:
     """Values as one test: ``'BLOCKS', 'SHARP' or 'SMOOTH'``."""
-    *others, last = sorted(values)
-    return f"{', '.join(others)} or {last}" if others else last
+    return either(sorted(values))

@@ -7,7 +7,7 @@ from itertools import groupby, islice, takewhile
 from operator import attrgetter
 from typing import TYPE_CHECKING, cast
 
-from kb_build.schema import TEST_ON
+from kb_build.schema import TEST_OFF, TEST_ON
 from kb_build.symbols.accepted import fatal_kinds
 from kb_build.symbols.flags import (
     empty_when_new,
@@ -239,7 +239,13 @@ def _things(labels: Sequence[str], most: int = _SHOWN_VALUES) -> str:
         shown[:-1] = [" ".join(label.split()[:-common]) for label in shown[:-1]]
     left = len(labels) - len(shown)
     more = f" and {left} more" if left else ""
-    return with_article(" or ".join(filter(None, (", ".join(shown[:-1]), shown[-1])))) + more
+    return with_article(either(shown)) + more
+
+
+def either(texts: Iterable[str]) -> str:
+    """``'A', 'B' or 'C'``."""
+    *others, last = texts
+    return f"{', '.join(others)} or {last}" if others else last
 
 
 def with_article(thing: str) -> str:
@@ -346,8 +352,7 @@ def _by_setting(values: Iterable[NewValue]) -> list[NewValue]:
         groups.setdefault((repr(new.value), new.made, new.when.partition("=")[0]), []).append(new)
     merged: list[NewValue] = []
     for (_, _, setting), same in groups.items():
-        *others, last = (new.when.partition("=")[2] for new in same)
-        choices = f"{', '.join(others)} or {last}" if others else last
+        choices = either(new.when.partition("=")[2] for new in same)
         merged.append(replace(same[0], when=f"{setting}={choices}"))
     return merged
 
@@ -403,6 +408,15 @@ def subscripts_text(socket: Symbol, most: int | None = None) -> str:
     if identifier not in ("", socket.label):
         shown.append(f"identifier `{identifier}`")
     return ", ".join(shown)
+
+
+def is_contrary(condition: SettingCondition, gate: Symbol, value: object) -> bool:
+    """Whether a value of the setting that a condition asks, its gate, surely is not what it asks for."""
+    test = condition.test
+    if isinstance(value, bool) and test in {TEST_ON, TEST_OFF}:
+        return value != (test == TEST_ON)
+    is_choice = gate.type == "enum" and isinstance(value, str) and "'" in test
+    return is_choice and (repr(value) in test) != test.startswith("'")  # else it names what must not be
 
 
 def switches(conditions: Iterable[SettingCondition]) -> Iterator[list[str]]:

@@ -26,8 +26,9 @@ from itertools import groupby
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
+from kb_build.schema import TEST_ON
 from kb_build.symbols.flags import usual_default
-from kb_build.symbols.lines import switches
+from kb_build.symbols.lines import is_contrary
 from kb_build.symbols.paths import last_name
 from kb_build.symbols.records import COMPARED
 from kb_check.findings import Finding
@@ -40,7 +41,7 @@ from kb_check.syntax.words import named_words
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from kb_build.symbols.records import SettingCondition, Symbol
+    from kb_build.symbols.records import SettingCondition
     from kb_check.script import Script
 
 
@@ -81,19 +82,22 @@ def _is_array(script: Script, node: ast.expr) -> bool:
 
 def _switched_off(script: Script, path: str) -> tuple[str, tuple[str, ...]]:
     """(what to say of a setting, the settings of which one must be changed) where it is of no use on a new thing."""
-    if gate := _switch(script, path):
-        message = (
-            f"Blender's panels grey `{path}` out unless `{gate.name}` is on. A new one has it off, and this script "
-            "does not turn it on."
-        )
-        return message, (gate.path,)
     conditions = script.names.reader.conditions_of(path)
+    clauses = [[*rows] for _, rows in groupby(conditions, key=attrgetter("clause"))]
+    for row, *others in clauses:
+        is_switch = not others and row.otherwise == "greyed" and row.test == TEST_ON
+        if is_switch and _is_otherwise(script, path, row):
+            message = (
+                f"Blender's panels grey `{path}` out unless `{last_name(row.gate)}` is on. A new one has it off, and "
+                "this script does not turn it on."
+            )
+            return message, (row.gate,)
     unmet = "A new one has it otherwise, and this script does not set it."
     if idle := [row for row in conditions if row.otherwise == "idle"]:
         return f"`{path}` has no effect unless {_told(idle)}. {unmet}", tuple(row.gate for row in idle)
-    for _, rows in groupby(conditions, key=attrgetter("clause")):
-        clause = [*rows]
-        if all(row.otherwise == "hidden" and _is_otherwise(script, path, row) for row in clause):
+    for clause in clauses:
+        is_choice = all(row.otherwise == "hidden" and "'" in row.test for row in clause)
+        if is_choice and all(_is_otherwise(script, path, row) for row in clause):
             message = f"Blender's panels show `{path}` only if {_told(clause)}. {unmet}"
             return message, tuple(row.gate for row in clause)
     return "", ()
@@ -104,28 +108,12 @@ def _told(rows: Iterable[SettingCondition]) -> str:
 
 
 def _is_otherwise(script: Script, path: str, row: SettingCondition) -> bool:
-    """Whether a choice of the same thing surely is another one on every new thing than is asked for."""
+    """Whether a setting of the same thing surely is otherwise on every new thing than is asked for."""
     gate = script.api.symbols.symbol(row.gate)
     if gate is None or not script.names.reader.descends(path.rpartition(".")[0], gate.owner):
         return False
     values = [new.value for new in gate.new_values] or [usual_default(gate)]
-    is_choice = gate.type == "enum" and "'" in row.test and COMPARED in gate.flags
-    is_wanted = row.test.startswith("'")  # else it says what the choice must not be
-    return is_choice and all((repr(value) in row.test) != is_wanted for value in values)
-
-
-def _switch(script: Script, path: str) -> Symbol | None:
-    """The truth value of the same thing, off on every new one, that must be on before panels let a property be set."""
-    reader = script.names.reader
-    conditions = [row for row in reader.conditions_of(path) if row.otherwise == "greyed"]
-    for switch, *others in switches(conditions):
-        gate = None if others else script.api.symbols.symbol(switch)
-        if gate is None or not reader.descends(path.rpartition(".")[0], gate.owner):
-            continue
-        values = [new.value for new in gate.new_values] or [usual_default(gate)]
-        if COMPARED in gate.flags and all(value is False for value in values):
-            return gate
-    return None
+    return COMPARED in gate.flags and all(is_contrary(row, gate, value) for value in values)
 
 
 def _has_default(script: Script, statement: ast.stmt | None, path: str) -> bool:

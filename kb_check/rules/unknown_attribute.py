@@ -92,9 +92,9 @@ def _elsewhere(script: Script, row: Resolution, owner: str, lacking: Lacking) ->
         return [other]
     if lacking.replacement:
         return []
-    found = [] if row.kind != "attribute" else of_collection(row.missing[0], row.value, reader)
-    if not found and row.kind == "attribute":
-        found = by_what_holds_it(owner, row.value, reader)
+    found: list[Elsewhere] = []
+    if row.kind == "attribute":
+        found = of_collection(row.missing[0], row.value, reader) or by_what_holds_it(owner, row.value, reader)
     return found or [
         Elsewhere(one.member.path, one.note)
         for one in members_within(owner, row.value, reader)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from kb_build.schema import TEST_OFF, TEST_ON
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.flags import usual_default
+from kb_build.symbols.lines import is_contrary
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -108,12 +109,9 @@ def _contrary(row: SettingCondition, reader: BaseReader) -> str:
     """What a new one has instead of what is asked for; empty where it has that, or nobody knows."""
     gate = reader.symbol(row.gate)
     value = usual_default(gate) if gate else None
-    if isinstance(value, bool) and row.test in {TEST_ON, TEST_OFF}:
-        return "" if value == (row.test == TEST_ON) else _ON if value else _OFF
-    if gate is None or gate.type != "enum" or not isinstance(value, str) or "'" not in row.test:
+    if gate is None or not is_contrary(row, gate, value):
         return ""
-    is_named, is_asked = repr(value) in row.test, row.test.startswith("'")
-    return "" if is_named == is_asked else f"`{value!r}`"
+    return (_ON if value else _OFF) if isinstance(value, bool) else f"`{value!r}`"
 
 
 def _listed(paths: Sequence[str], cls: str, reader: BaseReader) -> str:
