@@ -21,17 +21,25 @@ mix.data_type = "RGBA"
 tree.links.new(mix.outputs[0], emission.inputs[0])  # a warning: mix.outputs[2] is the one of colours
 ```
 
-Not reported: nodes that the script did not make itself, passes of the compositor's Render Layers, settings that the
-script may give in a way that is not plain to see, and scripts that compute names or import modules which may change
-scenes.
+A pass that no new view layer has is a warning, where the script nowhere names the setting that turns it on:
+
+```python
+layers = tree.nodes.new("CompositorNodeRLayers")
+layers.outputs["Depth"]  # a warning: view_layer.use_pass_z = True comes first
+```
+
+Not reported: nodes that the script did not make itself, settings that the script may give in a way that is not plain to
+see, and scripts that compute names or import modules which may change scenes.
 """
 
 from __future__ import annotations
 
 import ast
+import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.lines import shown_when
+from kb_build.symbols.records import HIDDEN
 from kb_check.findings import Finding
 from kb_check.nodes.hidden_links import hidden_link
 from kb_check.nodes.shown_sockets import hidden_by_settings, index_beyond
@@ -51,6 +59,9 @@ if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
+# The settings of a view layer, and of what belongs to it, in what shows a socket.
+_PASS = re.compile(r"view_layer(?:\.\w+)*\.(\w+)=")
+
 
 def _check(script: Script) -> Iterator[Finding]:
     yield from _never_shown(script)
@@ -63,9 +74,13 @@ def _check(script: Script) -> Iterator[Finding]:
         if not certain or not isinstance(node, ast.Subscript) or not isinstance(node.value, ast.Attribute):
             continue
         sockets = [symbol for path in row.symbols if (symbol := script.api.symbols.symbol(path))]
-        if row.value in _asked(script) or any(map(is_by_others, sockets)):
+        if row.value in _asked(script):
             continue
         owner = node.value.value
+        if any(map(is_by_others, sockets)):
+            if (message := _off(script, sockets, row)) and is_new(script, owner):
+                yield Finding(RULE.id, "warning", script.span(node), message, sockets[0].path)
+            continue
         message = (
             unpaired(script, sockets, node)
             or _hidden(script, sockets, row)
@@ -136,6 +151,18 @@ def _hidden(script: Script, sockets: list[Symbol], row: Resolution) -> str:
     return (
         f"A new `{first.owner}` shows no socket {row.value!r}, and finds only what it shows: it is there "
         f"with {shown_when(first)}."
+    )
+
+
+def _off(script: Script, sockets: list[Symbol], row: Resolution) -> str:
+    """What is wrong with asking for a pass that no new view layer has, and that the script does not turn on."""
+    settings = {word for socket in sockets for word in _PASS.findall(shown_when(socket))}
+    is_off = bool(settings) and all(HIDDEN in socket.flags for socket in sockets)
+    if not is_off or not settings.isdisjoint(named_words(script)):
+        return ""
+    return (
+        f"A new view layer does not have the pass {row.value!r}, and `{sockets[0].owner}` finds only what it shows: "
+        f"it is there with {shown_when(sockets[0])}."
     )
 
 

@@ -256,7 +256,6 @@ _SIGNED = (
     "The scale is negative on all axes where the matrix mirrors (`matrix.is_negative`), whichever axis it mirrors: "
     "`Matrix.Diagonal((-1, 2, 3, 1))` gives (-1, -2, -3)."
 )
-_WINDOWED = "It crashes a Blender without a window (`--background`, or `import bpy` in another Python)."
 _RULED = f"In a script: {ADDS_BOID_RULE}. Without it nothing is added, and {{'CANCELLED'}} is all that is returned."
 _SMOOTHED = (
     "The Smooth by Angle modifier is a group of geometry nodes: `bpy.ops.object.shade_auto_smooth(angle=0.5)` adds it "
@@ -299,11 +298,6 @@ ADVICE: tuple[Advice, ...] = (
     Advice(_CRASHING_CLASS, frozenset({"bpy.utils.register_class"}), since=(5, 1)),
     Advice(_SIGNED, frozenset({"mathutils.Matrix.to_scale", "mathutils.Matrix.decompose"})),
     Advice(_FACES, frozenset({"bpy_extras.bmesh_utils.bmesh_linked_uv_islands"})),
-    Advice(
-        _WINDOWED,
-        _of("WindowManager.popover", "WindowManager.popup_menu")
-        | {"bpy.ops.wm.call_menu", "bpy.ops.wm.call_panel"},
-    ),
     Advice(
         _SMOOTHED,
         wherever=(_stems("smooth"), _stems("angle"), _stems("modifier modifiers")),

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds functions outside RNA that crash Blender: operators of ``bmesh.ops``, and functions of ``bpy.app``.
+"""Finds functions outside RNA that crash Blender: operators of ``bmesh.ops``, functions of ``bpy.app``, and what pops
+up a menu where there is no window.
 
 The operators get all elements of a cube for what takes several, and nothing else: what Python cannot give them is
 missing. What crashes is called again, with an element for a keyword that takes one. The functions are called with none.
 """
 
+import inspect
 import types
 from contextlib import suppress
 from functools import partial
@@ -16,6 +18,8 @@ from .apart import crashes, ended_at
 from .bmesh_operators import UNUSABLE, parameters
 
 ELEMENTS = ("BMVert", "BMEdge", "BMFace")
+# What a function that pops something up calls to draw it, and what an operator finds it by.
+DRAWING, NAMED = "draw_func", "name"
 
 
 def call(operator, name=""):
@@ -54,6 +58,26 @@ def call_alone(function):
         function()
 
 
+def show_all(operator):
+    """Shows each menu and panel there is by an operator; those that do not belong here are refused."""
+    for kind in (bpy.types.Menu, bpy.types.Panel):
+        for shown in kind.__subclasses__():
+            with suppress(Exception):
+                operator(**{NAMED: shown.__name__})
+
+
+def popping_up():
+    """(path, call) of what pops something up: methods, given how it is drawn, and operators, given its name."""
+    manager = bpy.context.window_manager
+    for name, value in vars(bpy.types.WindowManager).items():
+        if inspect.isfunction(value) and DRAWING in inspect.signature(value).parameters:
+            yield f"bpy.types.WindowManager.{name}", partial(getattr(manager, name), lambda *_: None)
+    for name in dir(bpy.ops.wm):
+        operator = getattr(bpy.ops.wm, name)
+        if name.startswith("call_") and NAMED in operator.get_rna_type().properties:
+            yield f"bpy.ops.wm.{name}", partial(show_all, operator)
+
+
 def find_all(write):
     """One ``crashes`` record for each. Wants a system that can work apart."""
     # An operator has no name of its own, but the very text by which it was asked for: the keys keep it.
@@ -66,3 +90,6 @@ def find_all(write):
         function = getattr(bpy.app, name)
         if isinstance(function, types.BuiltinFunctionType) and crashes(partial(call_alone, function)):
             write("crashes", path=f"bpy.app.{name}", in_module=True)
+    for path, pop_up in popping_up() if bpy.app.background else ():
+        if crashes(partial(call_alone, pop_up)):
+            write("crashes", path=path, always=True)

@@ -133,6 +133,28 @@ def test_what_crashes_is_said_of_the_symbol_and_found_in_scripts(
 
 
 @pytest.mark.parametrize(
+    ("path", "call"),
+    [
+        ("bpy.types.WindowManager.popup_menu", "bpy.context.window_manager.popup_menu(drawn, title='t')"),
+        ("bpy.types.WindowManager.popover", "bpy.context.window_manager.popover(drawn)"),
+        ("bpy.ops.wm.call_menu", "bpy.ops.wm.call_menu(name='VIEW3D_MT_add')"),
+        ("bpy.ops.wm.call_menu_pie", "bpy.ops.wm.call_menu_pie(name='VIEW3D_MT_snap_pie')"),
+        ("bpy.ops.wm.call_panel", "bpy.ops.wm.call_panel(name='OBJECT_PT_transform')"),
+    ],
+)
+def test_what_pops_up_crashes_a_blender_without_a_window(
+    check: Check, rule_checker: Checker, path: str, call: str
+) -> None:
+    code = f"{_START}def drawn(self, context):\n    self.layout.label(text='i')\n\n{call}"
+    symbol = rule_checker.api.symbols.symbol(path)
+    assert symbol is not None
+    assert "where there is no window" in fatal_lines(symbol)
+    assert _ends(code)
+    assert [one.severity for one in check("crash", code)] == ["warning"]
+    assert not check("crash", f"{code}\n\ndef register():\n    pass\n")
+
+
+@pytest.mark.parametrize(
     ("before", "severity"),
     [
         ("", "warning"),

@@ -939,27 +939,6 @@ def test_advice_of_other_versions_is_not_given(reader: BaseReader, monkeypatch: 
     assert "GP_NOISE" not in told("4.3")
 
 
-@pytest.mark.parametrize(
-    ("path", "call"),
-    [
-        (
-            f"{TYPES}WindowManager.popup_menu",
-            "bpy.context.window_manager.popup_menu(lambda menu, context: None)",
-        ),
-        (f"{TYPES}WindowManager.popover", "bpy.context.window_manager.popover(lambda panel, context: None)"),
-        ("bpy.ops.wm.call_menu", "bpy.ops.wm.call_menu(name='VIEW3D_MT_add')"),
-        ("bpy.ops.wm.call_panel", "bpy.ops.wm.call_panel(name='OBJECT_PT_transform')"),
-    ],
-)
-def test_what_pops_up_crashes_a_blender_without_a_window(
-    path: str, call: str, reader: BaseReader, tmp_path: Path
-) -> None:
-    assert "crashes a Blender without a window" in said(reader, path)
-    with pytest.raises(subprocess.CalledProcessError) as crashed:
-        told_by_blender(f"import bpy\n{call}", tmp_path)
-    assert crashed.value.returncode < 0
-
-
 def test_a_boid_gets_a_rule_by_the_settings_in_the_context(reader: BaseReader, tmp_path: Path) -> None:
     (line,) = re.findall("`(with .+?)`", said(reader, "bpy.ops.boid.rule_add"))
     script = f"""
