@@ -13,10 +13,14 @@ curve.keyframe_insert("mute")  # reported: what an Action holds takes no key
 lamp.keyframe_insert("data.energy")  # reported: lamp.data.keyframe_insert("energy")
 obj.driver_add('modifiers["Array"].number')  # reported: no modifier has it
 obj.keyframe_insert("modifiers['Array'].count")  # reported: double quotes
+scatter.keyframe_insert(
+    '["Socket_2"]'
+)  # reported since 5.2: scatter.properties.inputs.Socket_2.keyframe_insert("value")
 ```
 
-Not reported: paths that a script puts together, what stands in a ``try``, names that the script asks for
-(``hasattr(modifier, "number")``), and ``driver_remove``, which takes paths that lead nowhere.
+Not reported: paths that a script puts together, but for those to inputs of geometry nodes, what stands in a ``try``,
+names that the script asks for (``hasattr(modifier, "number")``), and ``driver_remove``, which takes paths that lead
+nowhere.
 """
 
 from __future__ import annotations
@@ -35,6 +39,7 @@ from kb_check.running.tried import is_tried
 from kb_check.script import once_per_script
 from kb_check.syntax.literals import number, written
 from kb_check.values.data_paths import follow, item, size
+from kb_serve.recognise.resolving.subscripts import INPUT_KEY, NODES_MODIFIER, CustomProperties
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -48,6 +53,8 @@ _DRIVING = f"{T}bpy_struct.driver_add"  # it takes no keywords
 _CALLS = frozenset({f"{T}bpy_struct.keyframe_insert", f"{T}bpy_struct.keyframe_delete", _DRIVING})
 _UNBRACKETED = (ast.Name, ast.Attribute, ast.Subscript, ast.Call)  # a dot may stand behind these as they are
 _KEPT_IN = "animation_data"
+_MODIFIER = f"{T}Modifier"
+_PUT_IN = "\0"  # stands for what is put into a text
 _ALL = -1  # the index that stands for every item
 
 
@@ -80,6 +87,8 @@ def _of_text(script: Script, call: CallSite, node: ast.expr, index: ast.expr | N
         return _Fault(
             f"`{call.callee.symbol.name}` takes one path: call it for each.", call.callee.symbol.path
         )
+    if fault := _of_input(script, call, node):
+        return fault
     followed = _followed(script, call, node)
     if followed is None:
         return None
@@ -97,6 +106,36 @@ def _followed(script: Script, call: CallSite, node: ast.expr) -> Followed | None
     if not text.value or not isinstance(call.node.func, ast.Attribute):
         return None
     return follow(script, call.node.func.value, text.value)
+
+
+def _of_input(script: Script, call: CallSite, node: ast.expr) -> _Fault | None:
+    """A path to an input of geometry nodes as a custom property of the modifier, where the inputs are properties.
+
+    What is put into a path that is put together stands for a key.
+    """
+    text = _filled(node) if isinstance(node, ast.JoinedStr) else _text(script, node)
+    if '["' not in text or not isinstance(call.node.func, ast.Attribute):
+        return None
+    followed = follow(script, call.node.func.value, text)
+    are_modifiers = bool(followed.keyed) and all(
+        script.api.descends(cls, _MODIFIER) for cls in followed.keyed
+    )
+    if not are_modifiers or not CustomProperties(script.names.reader).inputs_are_properties:
+        return None
+    before = text.removesuffix(followed.rest)
+    key = INPUT_KEY.fullmatch(followed.rest.removeprefix('["').removesuffix('"]'))
+    now = ".".join(filter(None, (before, f"properties.inputs.{key[1] if key else 'Socket_2'}.value")))
+    quote = _quote(script, node) if key and not key[2] else ""
+    return _Fault(
+        "Inputs of a geometry-nodes modifier are no custom properties since Blender 5.2: "
+        f"the path is `{now.replace(_PUT_IN, '…')}`{'' if key else ', with the identifier of the input'}.",
+        NODES_MODIFIER, (), Fix("Write the property", (Edit(script.span(node), f"{quote}{now}{quote}"),), sure=True)
+        if quote and quote not in now else None,
+    )  # fmt: skip
+
+
+def _filled(node: ast.JoinedStr) -> str:
+    return "".join(str(part.value) if isinstance(part, ast.Constant) else _PUT_IN for part in node.values)
 
 
 def _elsewhere(script: Script, call: CallSite, followed: Followed, node: ast.expr) -> _Fault | None:

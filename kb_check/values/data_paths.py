@@ -39,7 +39,8 @@ class Followed:
 
     ``properties`` are what it can end at, one for each class that its owner can have, and ``rest`` what stands behind
     them, an item of an array. ``crossing`` is the place in the text where it enters another data-block, 0 for none.
-    A path that leads nowhere has a ``name`` that none of the ``lacking`` classes has, or is ``misquoted``.
+    A path that leads nowhere has a ``name`` that none of the ``lacking`` classes has, or is ``misquoted``. One that
+    asks for a custom property ends at the classes that are ``keyed``, and ``rest`` begins with the key.
     """
 
     properties: tuple[Symbol, ...] = ()
@@ -48,13 +49,15 @@ class Followed:
     lacking: tuple[str, ...] = ()
     name: str = ""
     misquoted: bool = False
+    keyed: tuple[str, ...] = ()
 
 
 def follow(script: Script, owner: ast.expr, path: str) -> Followed:
     """Follows a path from the struct that an expression is, as far as is known."""
     kinds = [kind for kind in members(script.type_of(owner) or UNKNOWN) if kind != NONE]
     properties: tuple[Symbol, ...] = ()
-    place = crossing = 0
+    keyed: tuple[str, ...] = ()
+    place, crossing, rest = 0, 0, ""
     while place < len(path):
         if properties and all(symbol.type in SCALAR_TYPES for symbol in properties):
             return Followed(properties, path[place:], crossing)
@@ -74,9 +77,13 @@ def follow(script: Script, owner: ast.expr, path: str) -> Followed:
             properties, kinds = tuple(symbol for symbol, _ in known), [kind for _, kind in known]
         else:
             made = _made(script, owner, path[: part.start()], part["key"])
+            keyed = tuple(
+                kind.cls for kind in kinds if isinstance(kind, Instance) and kind.sure and part["key"]
+            )
+            rest = path[part.start() :] if keyed else ""
             kinds = [made or kind.element for kind in kinds if isinstance(kind, Collection)]
         if not kinds:
-            return Followed(crossing=crossing)
+            return Followed((), rest, crossing, keyed=keyed)
     return Followed(properties, "", crossing)
 
 

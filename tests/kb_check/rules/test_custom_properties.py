@@ -184,6 +184,51 @@ def test_geometry_nodes_modifiers_have_none_where_their_inputs_are_properties(tm
     assert [at for at, error in enumerate(now, 1) if error] == [8, 10, 11, 12]
 
 
+_IN_PATHS: str = """\
+import bpy
+ob = bpy.data.objects["Cube"]
+modifier = ob.modifiers.new("Nodes", "NODES")
+modifier.node_group = group = bpy.data.node_groups.new("Group", "GeometryNodeTree")
+size = group.interface.new_socket("Size", in_out="INPUT", socket_type="NodeSocketFloat")
+modifier.keyframe_insert('["Socket_0"]', frame=1)
+modifier.keyframe_insert(data_path=f'["{size.identifier}"]', frame=1)
+ob.keyframe_insert('modifiers["Nodes"]["Socket_0"]', frame=2)
+ob.keyframe_insert(f'modifiers["{modifier.name}"]["{size.identifier}"]', frame=2)
+ob.driver_add('modifiers["Nodes"]["Socket_0"]')
+ob["own"] = 1.0
+ob.keyframe_insert('["own"]', frame=1)
+ob.keyframe_insert(f'["{"own"}"]', frame=1)
+modifier.keyframe_insert("show_viewport", frame=1)
+"""
+
+
+@pytest.mark.blender
+def test_paths_to_inputs_of_geometry_nodes_go_through_their_properties(tmp_path: Path) -> None:
+    lines = _IN_PATHS.splitlines()
+    with Checker(base_of("5.2")) as checker:
+        found = checker.check(_IN_PATHS, rules=["refused-path"])
+    errors = errors_in("5.2", tmp_path, lines)
+    assert (
+        [one.span.line for one in found]
+        == [at for at, error in enumerate(errors, 1) if error]
+        == [*range(6, 11)]
+    )
+    for one in found:
+        if one.fix:
+            (edit,) = one.fix.edits
+            line = lines[edit.span.line - 1]
+            lines[edit.span.line - 1] = line[: edit.span.column] + edit.text + line[edit.span.end_column :]
+    assert [bool(one.fix) for one in found] == [True, False, True, False, True]
+    now = errors_in("5.2", tmp_path, lines)
+    assert [at for at, error in enumerate(now, 1) if error] == [7, 9]
+
+
+def test_paths_to_inputs_of_geometry_nodes_are_keys_before(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = _IN_PATHS.splitlines()
+    assert not any(row[0] for row in run_statements(tmp_path, lines))
+    assert not rule_checker.check(_IN_PATHS, rules=["refused-path"])
+
+
 def test_geometry_nodes_modifiers_have_them_where_their_inputs_are_keys(
     rule_checker: Checker, tmp_path: Path
 ) -> None:
