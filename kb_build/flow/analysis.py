@@ -86,10 +86,13 @@ class Analyzer(Statements, Functions, Calls):
             if (reader.carried or reader.uses) and self.is_current(reader)
         ]
         followed: set[tuple[int, Given]] = set()
+        found: set[tuple[ast.AST, str]] = set()
         for file, reader in waiting:  # it grows
-            for row in reader.carried.values():
+            for place, row in reader.carried.items():
                 known = file.resolutions.get(row.node)
-                if known is None or not known.missing or known.value != row.value or not known.sure:
+                is_known = known is not None and known.missing and known.value == row.value and known.sure
+                if not is_known and place not in found:
+                    found.add(place)
                     file.carried_rows.append(row)
             for number, received, call in reader.uses:
                 if (number, received) in followed or call in hidden[id(file)]:

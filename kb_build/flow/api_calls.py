@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.api import operator_path, part_of_macro
 from kb_build.flow.core import ANY
-from kb_build.flow.expressions import constants
+from kb_build.flow.expressions import CARRYING, constants
 from kb_build.flow.facts import (
     BMESH_RESULTS,
     CLASS_NAMES,
@@ -184,9 +184,9 @@ class ApiCalls(ScriptCalls):
                 for constant in constants(item) if isinstance(item, (ast.Constant, ast.IfExp)) else ():
                     if constant in self.here.types:  # else it is of a branch for other versions
                         self.resolve_value(constant, constant.value, sources)
-                if isinstance(item, ast.Name):
+                if isinstance(item, CARRYING):
                     self.check_carried(item, sources)
-        elif isinstance(node, ast.Name) and CLASS_NAMES.get(symbol.path) == parameter.name:
+        elif isinstance(node, CARRYING) and CLASS_NAMES.get(symbol.path) == parameter.name:
             self.here.resolutions.pop(node, None)
             text = self.carried_text(node)
             if text and not self.api.is_class(T + text):

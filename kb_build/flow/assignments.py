@@ -23,8 +23,10 @@ from kb_build.flow.types import (
     Tuple,
     Type,
     general,
+    is_empty,
     join,
     members,
+    union,
 )
 from kb_build.symbols.api_names import STRUCT
 
@@ -82,10 +84,10 @@ class Assignments(Guards, Annotations):
         is_list = isinstance(before, (Sequence, Tuple))  # which takes in the components
         if (is_math(before) or is_math(right)) and not is_list:
             before = self.operation(node, before, right)
+        if is_list:
+            held = () if is_empty(before) else (self.iterated(before),)
+            before = Sequence("list", union((*held, self.iterated(right))))
         if isinstance(node.target, ast.Name):
-            grown = isinstance(before, (Sequence, Tuple)) and isinstance(right, (Sequence, Tuple))
-            if grown:
-                before = Sequence("list", join(self.iterated(before), self.iterated(right)))
             self.bind(node.target.id, general(before))
         elif isinstance(node.target, ast.Attribute):
             self._store(node.target, general(before), None)
@@ -132,25 +134,15 @@ class Assignments(Guards, Annotations):
         filled: Type
         match owner:
             case Mapping():
-                value = kind if owner.value is UNKNOWN and not owner.items else join(owner.value, kind)
-                known = key if owner.key is UNKNOWN else join(owner.key, key)
+                value = kind if owner.is_empty else union((owner.value, kind))
+                known = key if owner.is_empty else union((owner.key, key))
                 filled = Mapping(general(known), value)
             case Tuple() | Sequence(kind="list"):
                 held = self.iterated(kind) if isinstance(target.slice, ast.Slice) else kind
-                filled = Sequence("list", join(self.iterated(owner), held))
+                filled = Sequence("list", union((self.iterated(owner), held)))
             case _:
                 return
-        match target.value:
-            case ast.Name(id=name) if name in self.here.scope.state.names:
-                self.bind(name, filled)
-            case ast.Name(id=name):
-                self.here.scope.fill_outside(name, filled)
-            case ast.Attribute(value=value, attr=name):
-                of = self.here.types.get(value, UNKNOWN)
-                if isinstance(of, (LocalInstance, LocalClass)):
-                    self.classes[of.number].bind(name, filled)
-            case _:
-                pass
+        self.fill(target.value, filled)
 
     def _keep_group(self, target: ast.Subscript, owner: Type, kind: Type) -> None:
         """A dictionary that is given to one of Blender's structures is a group of custom properties from then on."""

@@ -8,11 +8,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.api_calls import ApiCalls
-from kb_build.flow.expressions import constants
+from kb_build.flow.expressions import CARRYING, constants
 from kb_build.flow.facts import leaves_active, made_by
 from kb_build.flow.python_calls import PythonCalls
 from kb_build.flow.read_calls import ReadCall
 from kb_build.flow.script_calls import ScriptCalls
+from kb_build.flow.type_parts import HOLDING, given_away
 from kb_build.flow.types import (
     NONE,
     UNKNOWN,
@@ -26,8 +27,10 @@ from kb_build.flow.types import (
     Resolution,
     Type,
     Union,
+    Unknown,
     literal_text,
     literal_texts,
+    members,
     union,
 )
 from kb_build.symbols.api_names import NODE, OBJECT
@@ -51,8 +54,18 @@ class Calls(ApiCalls, PythonCalls):
             result = self._one_of_several(callee, call)
         else:
             result = self._one_call(callee, call)
+        self._may_fill(callee, call)
         self.here.scope.state.active = self._active_after(callee, call)
         return result
+
+    def _may_fill(self, callee: Type, call: ReadCall) -> None:
+        """What was empty, and is given to what the script defines or imports, may be filled with anything there."""
+        if not any(isinstance(one, (Unknown, LocalFunction, LocalClass)) for one in members(callee)):
+            return
+        for node in (*call.node.args, *(keyword.value for keyword in call.node.keywords)):
+            kind = self.here.types.get(node, UNKNOWN)
+            if isinstance(kind, HOLDING) and (given := given_away(kind)) != kind:
+                self.fill(node, given)
 
     def _active_after(self, callee: Type, call: ReadCall) -> Type | None:
         """The active object behind a call, where an operator has made it and nothing may have changed that."""
@@ -83,7 +96,7 @@ class Calls(ApiCalls, PythonCalls):
         parts = [*node.keywords, *(part for argument in node.args for part in constants(argument))]
         parts += [part for keyword in node.keywords for part in constants(keyword.value)]
         given = [*node.args, *(keyword.value for keyword in node.keywords)]
-        parts += [part for part in given if isinstance(part, ast.Name)]
+        parts += [part for part in given if isinstance(part, CARRYING)]
         called = [member for member in callee.members if member is not NONE]
         results: list[Type] = []
         rows: dict[ast.AST, list[Resolution]] = defaultdict(list)

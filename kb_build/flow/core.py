@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -17,15 +18,21 @@ from kb_build.flow.types import (
     LocalClass,
     LocalFunction,
     LocalInstance,
+    Mapping,
     Module,
     Resolution,
+    Sequence,
+    Tuple,
     Type,
+    join,
+    literal_text,
     members,
+    union,
 )
 
 if TYPE_CHECKING:
-    import ast
-    from collections.abc import Generator, Iterable, Iterator, Sequence
+    from collections.abc import Generator, Iterable, Iterator
+    from collections.abc import Sequence as Rows
 
     from kb_build.flow.api import Api
     from kb_build.flow.scopes import State
@@ -49,7 +56,7 @@ class StepsExhausted(Exception):  # noqa: N818 - reads as the state it names
 class Core:
     """One analysis. The parts are mixed into one class (analysis.Analyzer), since types flow between all of them."""
 
-    def __init__(self, api: Api, version: tuple[int, ...], files: Sequence[SourceFile]) -> None:
+    def __init__(self, api: Api, version: tuple[int, ...], files: Rows[SourceFile]) -> None:
         self.api = api
         self.version = version
         self.sources = files
@@ -117,7 +124,7 @@ class Core:
         """What a call returns."""
         raise NotImplementedError
 
-    def read_body(self, body: Sequence[ast.stmt]) -> bool:
+    def read_body(self, body: Rows[ast.stmt]) -> bool:
         """Reads statements one after the other; whether what follows them can be reached."""
         raise NotImplementedError
 
@@ -171,9 +178,9 @@ class Core:
         node: ast.AST,
         kind: ResolutionKind,
         value: str,
-        symbols: Sequence[str] = (),
-        missing: Sequence[str] = (),
-        possible: Sequence[str] = (),
+        symbols: Rows[str] = (),
+        missing: Rows[str] = (),
+        possible: Rows[str] = (),
         *,
         sure: bool = True,
         guarded: bool = False,
@@ -305,6 +312,45 @@ class Core:
             self.note(number, name, found[0] if found else None)
         return found
 
+    def fill(self, target: ast.expr, filled: Type) -> None:
+        """What a list or a dictionary is from here on that a name holds, an attribute of the script's own things, or
+        another list or dictionary.
+        """
+        match target:
+            case ast.Name(id=name) if name in self.here.scope.state.names:
+                self.bind(name, filled)
+            case ast.Name(id=name):
+                self.here.scope.fill_outside(name, filled)
+            case ast.Attribute(value=value, attr=name):
+                of = self.here.types.get(value, UNKNOWN)
+                if isinstance(of, (LocalInstance, LocalClass)):
+                    found = self._find_attribute(of.number, name)
+                    self.classes[found[1] if found else of.number].bind(name, filled)
+            case (
+                ast.Subscript(value=holder, slice=key)
+                | ast.Call(func=ast.Attribute(value=holder, attr="setdefault"), args=[key, _])
+            ):
+                if (outer := self._holding(holder, key, filled)) is not None:
+                    self.fill(holder, outer)
+            case _:
+                pass
+
+    def _holding(self, holder: ast.expr, key: ast.expr, filled: Type) -> Type | None:
+        """What holds a list or a dictionary, once that is ``filled``; None for what is neither."""
+        match self.here.types.get(holder, UNKNOWN):
+            case Mapping() as outer:
+                text = literal_text(self.here.types.get(key, UNKNOWN))
+                if any(name == text for name, _ in outer.items):
+                    items = tuple((name, filled if name == text else kind) for name, kind in outer.items)
+                    return replace(outer, value=union(kind for _, kind in items), items=items)
+                return Mapping(outer.key, join(outer.value, filled))
+            case Sequence() as outer:
+                return replace(outer, element=join(outer.element, filled))
+            case Tuple(items=items):
+                return Sequence("list", union((*items, filled)))
+            case _:
+                return None
+
     def returned(self, number: int) -> Type | None:
         """What a function is known to return so far; None where nothing is known."""
         kind = self.functions[number].returned
@@ -367,6 +413,6 @@ class Core:
         return LocalFunction(kind.number, receiver)
 
 
-def _once(paths: Sequence[str]) -> tuple[str, ...]:
+def _once(paths: Rows[str]) -> tuple[str, ...]:
     """The same paths, each once."""
     return tuple(paths) if len(paths) < 2 else tuple(dict.fromkeys(paths))

@@ -14,6 +14,7 @@ from kb_build.flow.types import UNKNOWN, ClassObject, LocalClass, LocalFunction,
 from kb_build.symbols.api_names import TYPES as T
 
 _KEEPING = frozenset({"persistent", "cache", "lru_cache"})  # decorators of functions that do the same
+_OBJECT = "object"
 _MOST_CLASSES = 1_000  # of one script; which ones later classes are mixed into is not asked
 
 
@@ -79,10 +80,12 @@ class Defining(Expressions):
             if isinstance(statement, ast.AnnAssign) and isinstance(statement.target, ast.Name)
             if self.is_declared(statement.annotation)
         )
+        own_bases, known = self.direct_bases(number)
+        is_plain = known and own_bases in {(), (_OBJECT,)} and not (node.decorator_list or node.keywords)
         self._add_to_api(node.name, number, scope.state.names.get("bl_idname"))
         for name, kind in scope.ever.items():
             is_general = isinstance(kind, Plain) and name != "bl_idname"  # by which buttons name an operator
-            definition.bind(name, general(kind) if is_general else kind)
+            definition.bind(name, general(kind) if is_general and not is_plain else kind)
         self.bind(node.name, LocalClass(number))
         return True
 
@@ -108,8 +111,8 @@ class Defining(Expressions):
 
     def _base(self, node: ast.expr) -> Type:
         kind = self.evaluate(node)
-        if isinstance(node, ast.Name) and node.id == "object":
-            return ClassObject("object")
+        if isinstance(node, ast.Name) and node.id == _OBJECT:
+            return ClassObject(_OBJECT)
         return kind
 
     def _add_to_api(self, name: str, number: int, identifier: Type | None) -> None:

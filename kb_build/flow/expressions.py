@@ -78,6 +78,7 @@ _SIGNS: dict[type[ast.operator], str] = {
 _NUMBERS = frozenset({"bool", "int", "float"})
 _DEEPEST_ITEMS = 4  # dictionaries around one whose items are kept: what holds them, does so twice
 _LONGEST_LITERAL = 64
+CARRYING = (ast.Name, ast.Subscript, ast.Attribute)  # what may hold a text that is written elsewhere
 _COMPARISONS: dict[type[ast.cmpop], Callable[[list[int], list[int]], bool]] = {
     ast.Lt: op.lt, ast.LtE: op.le, ast.Gt: op.gt, ast.GtE: op.ge, ast.Eq: op.eq, ast.NotEq: op.ne,
 }  # fmt: skip
@@ -211,7 +212,7 @@ class Expressions(Members):
         if starred or len(items) > _LONGEST_LITERAL:
             return Sequence("list", union(items))
         if isinstance(node, ast.List):
-            return Tuple(tuple(items)) if items else Sequence("list", UNKNOWN)
+            return Tuple(tuple(items)) if items else Sequence("list", UNKNOWN, is_empty=True)
         return Tuple(tuple(items))
 
     def _set(self, node: ast.Set) -> Type:
@@ -235,7 +236,7 @@ class Expressions(Members):
         self.here.dictionaries -= 1
         if len(items) < len(values) or self.here.dictionaries > _DEEPEST_ITEMS:
             items = []
-        return Mapping(union(keys), union(values), tuple(items))
+        return Mapping(union(keys), union(values), tuple(items), is_empty=not node.keys)
 
     # Operations.
 
@@ -459,7 +460,7 @@ class Expressions(Members):
         # Those that were not reached are of a branch for other versions.
         for constant in filter(self.here.types.__contains__, self._given(node, source)):
             self.resolve_value(constant, constant.value, source, use=use)
-        if use == "value" and isinstance(node, (ast.Name, ast.Subscript)):
+        if use == "value" and isinstance(node, CARRYING):
             self.check_carried(node, source)
 
     def _given(self, node: ast.expr, sources: tuple[str, ...]) -> Iterator[ast.Constant]:
@@ -478,13 +479,13 @@ class Expressions(Members):
         return bool(texts) and any(not texts.isdisjoint(self.api.values_of(path)) for path in paths)
 
     def check_carried(self, node: ast.expr, sources: tuple[str, ...]) -> None:
-        """Records a text that a name or an item holds, where the enumeration that it is given to lacks it."""
+        """Records a text that a name, an item or an attribute holds, where the enumeration it is given to lacks it."""
         text = self.carried_text(node)
         if text is not None:
             self.resolve_value(node, text, sources, only_lacking=True)
 
     def carried_text(self, node: ast.expr) -> str | None:
-        """The text that a name or an item surely holds, though it is written elsewhere."""
+        """The text that a name, an item or an attribute surely holds, though it is written elsewhere."""
         kind = self.here.types.get(node)
         if not isinstance(kind, Plain) or not (kind.source is None or kind.source is FROM_VERSION):
             return None

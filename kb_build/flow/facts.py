@@ -42,6 +42,16 @@ ADDONS = frozenset(
 API_MODULES = frozenset({"bpy", "mathutils", "bmesh", "gpu", "gpu_extras", "bpy_extras", "blf", "aud", "freestyle",
                          "bl_math", "idprop", "imbuf", "addon_utils", "bl_keymap_utils", "nodeitems_utils",
                          "rna_keymap_ui", "rna_prop_ui"})  # fmt: skip
+# Functions and classes of Python's library that give back what they are given, and the modules that have them.
+PYTHON_NAMES = frozenset(
+    {
+        "random", "random.choice", "random.choices", "random.sample",
+        "itertools", "itertools.chain", "itertools.combinations", "itertools.cycle", "itertools.islice",
+        "itertools.permutations", "itertools.product",
+        "collections", "collections.defaultdict", "collections.deque",
+        "copy", "copy.copy",
+    }
+)  # fmt: skip
 # Modules that Python has lost → the Blender that first brings such a Python, that Python, and what to use.
 LOST_MODULES = {
     "binhex": ((4, 1), "3.11", "binascii"),

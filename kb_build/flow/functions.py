@@ -91,10 +91,10 @@ class Functions(Parameters, Trials):
         received = _as_one_call(function, whole)
         if follows:
             self.reader.uses.add((number, received, node))
-        if function.stale and self.rounds and not (self.settled or self.here.tries):
-            returned = UNKNOWN  # it is read again first
-        elif function.stale or (
-            not is_known and function.in_vain < _MOST_IN_VAIN and _tells_more(function, received)
+        is_read_again = function.stale and self.rounds and not (self.settled or self.here.tries)
+        if not is_read_again and (
+            function.stale
+            or (not is_known and function.in_vain < _MOST_IN_VAIN and _tells_more(function, received))
         ):
             is_new = received not in function.calls
             call = self.reading_for(number, received)

@@ -27,12 +27,12 @@ class Imports(Members):
             elif known:
                 self.resolve(alias, "name", alias.name, (alias.name,))
             if not known:
-                whole = self.local_module(alias.name)
+                whole = self._other_module(alias.name)
                 self._tell_lost(alias, alias.name)
             if alias.asname:
                 self.bind(alias.asname, whole)
             else:
-                self.bind(top, self._module(top) if known else self.local_module(top))
+                self.bind(top, self._module(top) if known else self._other_module(top))
         return True
 
     def read_import_from(self, node: ast.ImportFrom) -> bool:
@@ -40,7 +40,7 @@ class Imports(Members):
         module = node.module or ""
         known = not node.level and module.partition(".")[0] in API_MODULES
         owner = (
-            self._module(module) if known else self.local_module(self.here.file.imported(node.level, module))
+            self._module(module) if known else self._other_module(self.here.file.imported(node.level, module))
         )
         if not known and not node.level:
             self._tell_lost(node, module)
@@ -67,6 +67,11 @@ class Imports(Members):
         for name in names:
             if not name.startswith("_"):
                 self.bind(name, self.attribute(owner, name).type)
+
+    def _other_module(self, name: str) -> Type:
+        """A module of the files that are analysed together, or else of Python's library."""
+        found = self.local_module(name)
+        return self.of_python(name) if found is UNKNOWN else found
 
     def _module(self, path: str) -> Type:
         symbol = self.api.symbols.symbol(path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from itertools import takewhile
@@ -20,6 +21,7 @@ from kb_build.flow.facts import (
     OF_OPERATOR,
     OF_STRUCT_SEQUENCES,
     OPEN_CLASSES,
+    PYTHON_NAMES,
     STRUCT_SEQUENCES,
     VERSION,
 )
@@ -65,6 +67,7 @@ if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol
 
 _GROUP_METHODS = frozenset({"add", "remove", "clear", "move"})
+_ROWS: dict[str, type] = {"set": set, "deque": deque}
 _PYTHON: dict[str, type] = {"str": str, "int": int, "float": float, "bool": bool, "bytes": bytes}
 # The last socket of nodes whose items scripts add: it makes room for each.
 _MOVING = "NodeSocketVirtual"
@@ -330,7 +333,8 @@ class Members(Core):
 
     def _of_local_class(self, kind: LocalClass, name: str, found: Lookup) -> None:
         if own := self.class_attribute(kind.number, name):
-            found.types.append(self.bound(own[0], kind) if self._is_class_method(own[0]) else own[0])
+            held = self.bound(own[0], kind) if self._is_class_method(own[0]) else own[0]
+            found.types.append(self._as_computed(held))
             return
         bases, known = self.api_bases(kind.number)
         self._of_bases([ClassObject(base) for base in bases], name, found, known=known)
@@ -340,13 +344,15 @@ class Members(Core):
 
     def _of_local_instance(self, kind: LocalInstance, name: str, found: Lookup) -> None:
         if own := self.class_attribute(kind.number, name):
-            held = self.bound(own[0], kind)
-            if any(file.computes_attributes for file in self.sources):
-                held = unsure(held)
+            held = self._as_computed(self.bound(own[0], kind))
             found.types.append(union((held, *self._overriding(kind.number, name, own[0]))))
             return
         bases, known = self.api_bases(kind.number)
         self._of_bases([Instance(base) for base in bases], name, found, known=known)
+
+    def _as_computed(self, held: Type) -> Type:
+        """What an attribute holds, where a script may give it something else by a name that it computes."""
+        return unsure(held) if any(file.computes_attributes for file in self.sources) else held
 
     def _overriding(self, number: int, name: str, own: Type) -> Iterator[Type]:
         """What the classes that derive from one have in the place of its attribute."""
@@ -378,6 +384,14 @@ class Members(Core):
             found.types.append(self._held(member.type, kind, name))
         elif hasattr(_python_class(kind), name):
             found.types.append(Builtin(name, kind))
+
+    @staticmethod
+    def of_python(path: str) -> Type:
+        """A module, a function or a class of Python's library by its path, where more is known of it."""
+        return Builtin(path) if path in PYTHON_NAMES else UNKNOWN
+
+    def _of_python_module(self, kind: Builtin, name: str, found: Lookup) -> None:
+        found.types.append(self.of_python(f"{kind.name}.{name}") if kind.receiver is None else UNKNOWN)
 
     # Items.
 
@@ -527,6 +541,7 @@ class Members(Core):
         LocalModule: _of_local_module,
         ClassObject: _of_class,
         Operator: _of_operator,
+        Builtin: _of_python_module,
         LocalClass: _of_local_class,
         LocalInstance: _of_local_instance,
         Plain: _of_value,
@@ -566,4 +581,4 @@ def _python_class(kind: Type) -> type:
         return _PYTHON.get(kind.kind, str)
     if isinstance(kind, Tuple):
         return list  # or a tuple, which has less
-    return set if isinstance(kind, Sequence) and kind.kind == "set" else list
+    return _ROWS.get(kind.kind, list) if isinstance(kind, Sequence) else list

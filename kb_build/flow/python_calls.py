@@ -6,6 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.core import ANY
+from kb_build.flow.facts import PYTHON_NAMES
 from kb_build.flow.script_calls import ScriptCalls
 from kb_build.flow.types import (
     BOOL,
@@ -28,6 +29,7 @@ from kb_build.flow.types import (
     Sequence,
     Tuple,
     Type,
+    general,
     join,
     literal_text,
     members,
@@ -36,8 +38,6 @@ from kb_build.flow.types import (
 from kb_build.symbols.api_names import TYPES
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence as Rows
-
     from kb_build.flow.members import Lookup
     from kb_build.flow.read_calls import ReadCall
 
@@ -65,15 +65,19 @@ class PythonCalls(ScriptCalls):
     ) -> Type:
         """What one of Python's functions, or a method of a value, returns."""
         if callee.receiver is not None:
-            return self._method(callee.receiver, callee.name, call.arguments)
+            return self._method(callee.receiver, callee.name, call)
         name = callee.name
         if name in _PLAIN_RESULTS:
             return _PLAIN_RESULTS[name]
         arguments, first = call.arguments, call.argument(0)
         if name in {"list", "tuple"} and isinstance(first, Tuple):
             return first
+        if name in PYTHON_NAMES:
+            return self._of_library(name, call)
         if name in _ITERATORS:
-            return Sequence(_ITERATORS[name], self.iterated(first) if arguments else UNKNOWN)
+            return Sequence(
+                _ITERATORS[name], self.iterated(first) if arguments else UNKNOWN, is_empty=not call.node.args
+            )
         match name:
             case "next":
                 return (
@@ -121,9 +125,47 @@ class PythonCalls(ScriptCalls):
             case "getattr" | "delattr":
                 return self._named_attribute(call)
             case "dict":
-                return Mapping(UNKNOWN, UNKNOWN)
+                return self._dictionary(call)
             case _:
                 return UNKNOWN
+
+    def _of_library(self, name: str, call: ReadCall) -> Type:  # noqa: PLR0911 - one return a function
+        """What a function of Python's library returns (see :data:`facts.PYTHON_NAMES`)."""
+        if any(isinstance(argument, ast.Starred) for argument in call.node.args):
+            return UNKNOWN
+        first = self.iterated(call.argument(0))
+        match name.rpartition(".")[2]:
+            case "choice":
+                return first
+            case "choices" | "sample" | "cycle" | "islice":
+                return Sequence("list", first)
+            case "deque":
+                return Sequence("deque", first, is_empty=not call.node.args)
+            case "combinations" | "permutations":
+                return Sequence("iterator", Sequence("list", first))
+            case "chain":
+                return Sequence("iterator", union(map(self.iterated, call.arguments)))
+            case "product" if not call.keywords:
+                return Sequence("iterator", Tuple(tuple(map(self.iterated, call.arguments))))
+            case "defaultdict" if call.argument(0) in {Builtin("list"), Builtin("set")}:
+                kind = "list" if call.argument(0) == Builtin("list") else "set"
+                return Mapping(UNKNOWN, Sequence(kind, UNKNOWN, is_empty=True))
+            case "copy":
+                return call.argument(0)
+            case _:
+                return UNKNOWN
+
+    def _dictionary(self, call: ReadCall) -> Type:
+        """``dict(name=value)``, ``dict(pairs)``."""
+        named = call.keywords
+        if not call.node.args and "" not in named:
+            return Mapping(STR, union(named.values()), tuple(named.items()), is_empty=not named)
+        pairs = call.argument(0)
+        if isinstance(pairs, Mapping) and not named:
+            return pairs
+        pair = self.iterated(pairs)
+        key, value = pair.items if isinstance(pair, Tuple) and len(pair.items) == 2 else (UNKNOWN, UNKNOWN)
+        return Mapping(general(key), value) if not named else Mapping(UNKNOWN, UNKNOWN)
 
     def _set_by_name(self, call: ReadCall) -> None:
         """``setattr(x, "name", value)``."""
@@ -150,6 +192,9 @@ class PythonCalls(ScriptCalls):
             self.pass_to(function.number, [element], {})
         if keep:
             return element
+        if isinstance(function, LocalFunction):
+            self.run_now(function.number)
+            return self.returned(function.number) or UNKNOWN
         if isinstance(function, Builtin) and function.receiver is None:
             return _PLAIN_RESULTS.get(function.name, UNKNOWN)
         return UNKNOWN
@@ -197,8 +242,8 @@ class PythonCalls(ScriptCalls):
             call.node.args[1], "text", name, found.symbols, found.missing, found.possible, sure=found.sure
         )
 
-    def _method(self, receiver: Type, name: str, arguments: Rows[Type]) -> Type:  # noqa: PLR0911, PLR0912 - one case a method
-        first = arguments[0] if arguments else UNKNOWN
+    def _method(self, receiver: Type, name: str, call: ReadCall) -> Type:  # noqa: PLR0911, PLR0912 - one case a method
+        arguments, first = call.arguments, call.argument(0)
         if isinstance(receiver, Plain):
             return _STRING_RESULTS.get(name, STR) if receiver.kind == "str" else UNKNOWN
         if isinstance(receiver, Collection):
@@ -208,11 +253,11 @@ class PythonCalls(ScriptCalls):
         if isinstance(receiver, Mapping):
             match name:
                 case "update":
-                    self._grow(receiver, UNKNOWN)
+                    self._grow(receiver, UNKNOWN, call)
                     return NONE
                 case "setdefault" if len(arguments) > 1:
                     kind = join(self.item(receiver, first, ast.Pass()), arguments[1])
-                    self._grow(receiver, arguments[1])
+                    self._grow(receiver, arguments[1], call)
                     return kind
                 case "get" | "pop" | "setdefault":
                     kind = self.item(receiver, first, ast.Pass())
@@ -228,35 +273,41 @@ class PythonCalls(ScriptCalls):
                 case _:
                     return UNKNOWN
         match name:
-            case "pop":
+            case "pop" | "popleft":
                 return self.iterated(receiver)
             case "copy" | "union" | "intersection" | "difference":
                 return receiver
             case "index" | "count":
                 return INT
             case "append" | "add" | "insert" | "appendleft" if arguments:
-                self._grow(receiver, arguments[-1])
+                self._grow(receiver, arguments[-1], call)
                 return NONE
             case "extend" | "update" if arguments:
-                self._grow(receiver, self.iterated(first))
+                self._grow(receiver, self.iterated(first), call)
                 return NONE
             case _:
                 return UNKNOWN
 
-    def _grow(self, receiver: Type, kind: Type) -> None:
-        """A list or a dictionary that names hold gets one more element: their types follow."""
+    def _grow(self, receiver: Type, kind: Type, call: ReadCall) -> None:
+        """A list or a dictionary that names or an attribute hold gets one more element: their types follow."""
         grown: Type
         match receiver:
-            case Sequence() | Tuple():
-                before = receiver.element if isinstance(receiver, Sequence) else union(receiver.items)
-                after = kind if before is UNKNOWN else join(before, kind)
-                grown = Sequence(receiver.kind if isinstance(receiver, Sequence) else "list", after)
+            case Sequence(element=before) if not receiver.is_empty:
+                grown = Sequence(receiver.kind, union((before, kind)))
+            case Sequence():
+                grown = Sequence(receiver.kind, kind)
+            case Tuple():
+                grown = Sequence("list", union((*receiver.items, kind)))
             case Mapping():
-                is_empty = receiver.value is UNKNOWN and not receiver.items
-                grown = Mapping(UNKNOWN, kind if is_empty else join(receiver.value, kind))
+                grown = Mapping(UNKNOWN, kind if receiver.is_empty else union((receiver.value, kind)))
             case _:
                 return
         held = self.here.scope.state.names
         self.spend(len(held))
         for name in [name for name, one in held.items() if one is receiver]:
             self.bind(name, grown)
+        match call.node.func:
+            case ast.Attribute(value=ast.Attribute() | ast.Subscript() | ast.Call() as filled):
+                self.fill(filled, grown)
+            case _:
+                pass

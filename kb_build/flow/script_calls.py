@@ -29,7 +29,7 @@ class ScriptCalls(Narrowing):
         made = self.class_attribute(callee.number, "__init__")
         if made and isinstance(made[0], LocalFunction):
             self.pass_to(made[0].number, [instance, *call.arguments], call.keywords)
-            self._run_now(made[0].number)
+            self.run_now(made[0].number)
         return instance
 
     def call_local_function(self, callee: LocalFunction, call: ReadCall) -> Type:
@@ -40,14 +40,14 @@ class ScriptCalls(Narrowing):
         if callee.receiver is not None:
             values = [callee.receiver, *values]
         given = self.pass_to(callee.number, values, call.keywords)
-        self._run_now(callee.number)
+        self.run_now(callee.number)
         if has_starred or "" in given or function.running:
             # What it returns is not known where it was not read with what this call passes.
             is_read = function.running or not function.stale
             return (self.returned(callee.number) if is_read else None) or UNKNOWN
         return self.result_of_call(callee.number, given, call.node)
 
-    def _run_now(self, number: int) -> None:
+    def run_now(self, number: int) -> None:
         """Reads a function for what it returns, or for what it binds, unless it is known or too far inside."""
         function = self.functions[number]
         if (

@@ -31,6 +31,7 @@ from kb_build.flow.types import (
     Type,
     Union,
     Unknown,
+    is_empty,
     members,
     union,
 )
@@ -70,12 +71,19 @@ def with_parts(kind: Type, change: Callable[[Type], Type]) -> Type:
         case Tuple():
             return Tuple(tuple(map(change, kind.items)))
         case Sequence():
-            return Sequence(kind.kind, change(kind.element))
+            return replace(kind, element=change(kind.element))
         case Mapping():
             items = tuple((name, change(value)) for name, value in kind.items)
-            return Mapping(change(kind.key), change(kind.value), items)
+            return replace(kind, key=change(kind.key), value=change(kind.value), items=items)
         case _:
             return kind
+
+
+def given_away(kind: Type) -> Type:
+    """A type as that of what others were given, who may have filled it: nothing in it surely is empty."""
+    if is_empty(kind):
+        return replace(kind, is_empty=False)
+    return with_parts(kind, given_away) if isinstance(kind, HOLDING) else kind
 
 
 def bounded(kind: Type, depth: int = DEEPEST_TYPE) -> Type:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import builtins
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, TypeGuard
 
 if TYPE_CHECKING:
     import ast
@@ -136,10 +136,11 @@ class Collection:
 
 @dataclass(frozen=True, slots=True)
 class Sequence:
-    """A list, tuple, set or iterator whose elements are all of one type."""
+    """A list, tuple, set or iterator whose elements are all of one type; ``is_empty`` while it surely has none."""
 
     kind: str
     element: Type
+    is_empty: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,11 +152,12 @@ class Tuple:
 
 @dataclass(frozen=True, slots=True)
 class Mapping:
-    """A dictionary; ``items`` are what is known of its literal keys."""
+    """A dictionary; ``items`` are what is known of its literal keys. ``is_empty`` while it surely has none."""
 
     key: Type
     value: Type
     items: tuple[tuple[str, Type], ...] = ()
+    is_empty: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,6 +218,7 @@ Type = (
     | Union
 )
 
+_HOLDERS = (Sequence, Tuple, Mapping)
 # What one call passes: parameter → type, of all that have one.
 Given = tuple[tuple[str, Type], ...]
 # What was known of other definitions when they were read: (class, attribute), or of a function what it returns: "" to
@@ -273,8 +276,26 @@ def union(kinds: Iterable[Type]) -> Type:
 
 
 def join(first: Type, second: Type) -> Type:
-    """What a name holds after two ways led to the same place."""
-    return first if first is second or first == second else union((first, second))
+    """What a name holds after two ways led to the same place.
+
+    Of a list or a dictionary that is empty on one of them, what it holds on the other is all that it may hold.
+    """
+    if first is second or first == second:
+        return first
+    if is_empty(first) or is_empty(second):
+        empty, other = (first, second) if is_empty(first) else (second, first)
+        if any(
+            isinstance(one, Mapping) == isinstance(empty, Mapping)
+            for one in members(other)
+            if isinstance(one, _HOLDERS)
+        ):
+            return other
+    return union((first, second))
+
+
+def is_empty(kind: Type) -> TypeGuard[Sequence | Mapping]:
+    """Whether it is a list or a dictionary in which there surely is nothing."""
+    return isinstance(kind, (Sequence, Mapping)) and kind.is_empty
 
 
 def instance_of(kind: Type) -> Type:

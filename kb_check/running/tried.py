@@ -49,7 +49,7 @@ def _may_catch(script: Script, handler: ast.ExceptHandler, errors: tuple[str, ..
     caught = [
         kind.name
         for kind in kinds
-        if isinstance(kind, Builtin) and isinstance(getattr(builtins, kind.name), type)
+        if isinstance(kind, Builtin) and isinstance(getattr(builtins, kind.name, None), type)
     ]
     return len(caught) < len(kinds) or catches(caught, errors)
 

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.api import ARRAY
 from kb_build.flow.facts import ELEMENT
-from kb_build.flow.types import FLOAT, UNKNOWN, Collection, Instance, Sequence, Tuple, Union
+from kb_build.flow.types import FLOAT, Collection, Instance, Sequence, Tuple, Union, members
 from kb_build.symbols.api_names import COLLECTION
 from kb_check.calls.resolved import callee_path
 from kb_check.syntax.bindings import once_bound
@@ -40,7 +40,6 @@ _OF_DOUBLES = frozenset({"empty", "ones", "zeros"})  # unless they are told othe
 _DOUBLES = frozenset({"float", "np.float64", "numpy.float64", "'float64'", "np.double", "'d'"})
 _OF_ITEMS = frozenset(f"{owner}.{name}" for owner in (ARRAY, COLLECTION) for name in _FUNCTIONS)
 _ROWS = frozenset(f"mathutils.{name}" for name in ("Color", "Euler", "Quaternion", "Vector"))
-_EMPTY = Sequence("list", UNKNOWN)
 _RESIZING = frozenset({"append", "extend", "insert", "resize", "shape"})
 
 
@@ -169,16 +168,11 @@ def _makes_rows(script: Script, call: ast.Call, wanted: int) -> bool:
 
 
 def _is_of_rows(script: Script, buffer: ast.expr) -> bool:
-    match script.type_of(buffer):
-        case Union(members=members):
-            # What a list holds is not known before something is added.
-            known = [kind for kind in members if kind != _EMPTY or not _is_appended_to(script, buffer)]
-            return bool(known) and all(_holds_rows(kind) for kind in known)
-        case kind:
-            return _holds_rows(kind)
+    kind = script.type_of(buffer)
+    return kind is not None and all(map(_holds_rows, members(kind)))
 
 
-def _holds_rows(kind: Type | None) -> bool:
+def _holds_rows(kind: Type) -> bool:
     match kind:
         case Tuple(items=items):
             return bool(items) and all(_is_row(item) for item in items)
@@ -198,14 +192,6 @@ def _is_row(kind: Type) -> bool:
             return sure and cls in _ROWS
         case _:
             return False
-
-
-def _is_appended_to(script: Script, buffer: ast.expr) -> bool:
-    """Whether a name is that of one empty list, to which items are added one by one."""
-    made = once_bound(script, buffer)
-    if not isinstance(buffer, ast.Name) or not isinstance(made, ast.List) or made.elts:
-        return False
-    return not _is_changed(script, {buffer.id}, {*_RESIZING, "copy", "sort"} - {"append"})
 
 
 def wide_buffer(script: Script, call: ast.Call) -> ast.Call | None:

@@ -139,6 +139,52 @@ REFUSED = {
         """,
         [ENGINE],
     ),
+    "an item, given to a call": (
+        "chosen = {'kind': 'SUBSURFACE'}\nob.modifiers.new('a', chosen['kind'])",
+        ["bpy.types.ObjectModifiers.new(type):SUBSURFACE"],
+    ),
+    "a loop over dictionaries": (
+        """
+        for row in [{'name': 'a', 'kind': 'BEVEL'}, {'name': 'b', 'kind': 'SUBSURFACE'}]:
+            ob.modifiers.new(name=row['name'], type=row['kind'])
+        """,
+        ["bpy.types.ObjectModifiers.new(type):SUBSURFACE"],
+    ),
+    "a dictionary made by a call": (
+        """
+        for name, value in dict(IOR=1.4, Specular=1.0).items():
+            bsdf.inputs[name].default_value = value
+        """,
+        [SPECULAR],
+    ),
+    "a class's own constant": (
+        """
+        class Config:
+            ENGINE = 'BLENDER_EEVEE_NEXT'
+        scene.render.engine = Config.ENGINE
+        """,
+        [ENGINE],
+    ),
+    "a constant of an object's class": (
+        """
+        class Maker:
+            KIND = 'ShaderNodeTexMusgrave'
+            def make(self):
+                return tree.nodes.new(self.KIND)
+        Maker().make()
+        """,
+        [MUSGRAVE],
+    ),
+    "a constant that a class inherits": (
+        """
+        class Base:
+            ENGINE = 'BLENDER_EEVEE_NEXT'
+        class Derived(Base):
+            pass
+        scene.render.engine = Derived.ENGINE
+        """,
+        [ENGINE],
+    ),
     "a branch of this Blender": (
         "engine = 'BLENDER_EEVEE_NEXT' if bpy.app.version >= (4, 2) else 'BLENDER_EEVEE'\nuse(engine)",
         [ENGINE],
@@ -294,6 +340,57 @@ TAKEN = {
         kinds[1] = 'SUBSURF'
         for kind in kinds:
             ob.modifiers.new(kind, kind)
+    """,
+    "a constant that another class has otherwise": """
+        class Base:
+            ENGINE = 'BLENDER_EEVEE_NEXT'
+            def set(self):
+                scene.render.engine = self.ENGINE
+        class Derived(Base):
+            ENGINE = 'CYCLES'
+        Derived().set()
+    """,
+    "a constant that is set from outside": """
+        class Config:
+            ENGINE = 'BLENDER_EEVEE_NEXT'
+        Config.ENGINE = 'CYCLES'
+        scene.render.engine = Config.ENGINE
+    """,
+    "a constant that an object has otherwise": """
+        class Maker:
+            KIND = 'ShaderNodeTexMusgrave'
+            def __init__(self, kind):
+                self.KIND = kind
+        tree.nodes.new(Maker('ShaderNodeTexNoise').KIND)
+    """,
+    "a constant that is set by a name": """
+        class Config:
+            ENGINE = 'BLENDER_EEVEE_NEXT'
+        for name, value in zip(["ENGINE"], ["CYCLES"]):
+            setattr(Config, name, value)
+        scene.render.engine = Config.ENGINE
+    """,
+    "a field with a value of its own": """
+        from dataclasses import dataclass
+        @dataclass
+        class Options:
+            engine: str = 'BLENDER_EEVEE_NEXT'
+        scene.render.engine = Options(engine='CYCLES').engine
+    """,
+    "a member of an enumeration": """
+        from enum import StrEnum
+        class Engine(StrEnum):
+            NEXT = 'BLENDER_EEVEE_NEXT'
+            BEST = 'CYCLES'
+            @classmethod
+            def _missing_(cls, value):
+                return cls.BEST
+        scene.render.engine = Engine.BEST
+    """,
+    "an item that is asked for": """
+        chosen = {'engine': 'BLENDER_EEVEE_NEXT'}
+        if chosen['engine'] in engines:
+            use(chosen['engine'])
     """,
     "a name that another function sets": """
         engine = 'BLENDER_EEVEE_NEXT'
