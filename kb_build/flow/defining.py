@@ -81,7 +81,10 @@ class Defining(Expressions):
             if self.is_declared(statement.annotation)
         )
         own_bases, known = self.direct_bases(number)
-        is_plain = known and own_bases in {(), (_OBJECT,)} and not (node.decorator_list or node.keywords)
+        is_plain = known and own_bases in {(), (_OBJECT,)} and not node.keywords
+        if is_plain and node.decorator_list:
+            is_plain = all(map(_makes_data_class, node.decorator_list))
+            definition.fields = _fields(node) if is_plain else ()
         self._add_to_api(node.name, number, scope.state.names.get("bl_idname"))
         for name, kind in scope.ever.items():
             is_general = isinstance(kind, Plain) and name != "bl_idname"  # by which buttons name an operator
@@ -133,3 +136,18 @@ class Defining(Expressions):
             self.own_operators |= {f"bpy.ops.{module.lower()}", f"bpy.ops.{module.lower()}.{operator}"}
             text = f"{module.upper()}_OT_{operator}"
         self.own_types[name] = self.own_types[text] = LocalClass(number)
+
+
+def _makes_data_class(decorator: ast.expr) -> bool:
+    """Whether a decorator is that of ``dataclasses``, which gives an instance what it is made with."""
+    function = decorator.func if isinstance(decorator, ast.Call) else decorator
+    name = function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
+    return name == "dataclass"
+
+
+def _fields(node: ast.ClassDef) -> tuple[str, ...]:
+    return tuple(
+        statement.target.id
+        for statement in node.body
+        if isinstance(statement, ast.AnnAssign) and isinstance(statement.target, ast.Name)
+    )

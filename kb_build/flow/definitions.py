@@ -61,13 +61,15 @@ class FunctionDefinition:
 class ClassDefinition:
     """A class of the script; ``attributes`` joins what its body, its annotations and its methods bind.
 
-    Those that are ``declared`` by bpy.props keep their types, whatever is assigned to them.
+    Those that are ``declared`` by bpy.props keep their types, whatever is assigned to them. ``fields`` are those of a
+    data class, which its instances are made with, in their order.
     """
 
     node: ast.ClassDef
     bases: tuple[Type, ...]
     attributes: dict[str, Type] = field(default_factory=dict[str, Type])
     declared: frozenset[str] = frozenset()
+    fields: tuple[str, ...] = ()
     changes: int = 0
 
     def bind(self, name: str, kind: Type) -> None:

@@ -9,7 +9,7 @@ from kb_build.flow.core import DEEPEST_RUN
 from kb_build.flow.narrowing import Narrowing
 from kb_build.flow.texts import passed
 from kb_build.flow.type_parts import bounded
-from kb_build.flow.types import UNKNOWN, LocalClass, LocalFunction, LocalInstance, Type, join
+from kb_build.flow.types import UNKNOWN, LocalClass, LocalFunction, LocalInstance, Type, general, join
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -30,7 +30,19 @@ class ScriptCalls(Narrowing):
         if made and isinstance(made[0], LocalFunction):
             self.pass_to(made[0].number, [instance, *call.arguments], call.keywords)
             self.run_now(made[0].number)
+        elif fields := self.classes[callee.number].fields:
+            self._make_with(callee.number, fields, call)
         return instance
+
+    def _make_with(self, number: int, fields: tuple[str, ...], call: ReadCall) -> None:
+        """What an instance of a data class is made with is what its fields hold, besides what they have by default."""
+        definition = self.classes[number]
+        if "" in call.keywords or any(isinstance(given, ast.Starred) for given in call.node.args):
+            for name in fields:
+                definition.bind(name, general(definition.attributes.get(name, UNKNOWN)))
+            return
+        for name, kind in {**dict(zip(fields, call.arguments, strict=False)), **call.keywords}.items():
+            definition.bind(name, kind)
 
     def call_local_function(self, callee: LocalFunction, call: ReadCall) -> Type:
         """What a function of the script returns; it receives what it is given."""

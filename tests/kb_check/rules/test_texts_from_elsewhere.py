@@ -185,6 +185,17 @@ REFUSED = {
         """,
         [ENGINE],
     ),
+    "what a field has by default": (
+        """
+        from dataclasses import dataclass
+        @dataclass
+        class Options:
+            samples: int
+            engine: str = 'BLENDER_EEVEE_NEXT'
+        scene.render.engine = Options(8).engine
+        """,
+        [ENGINE],
+    ),
     "a branch of this Blender": (
         "engine = 'BLENDER_EEVEE_NEXT' if bpy.app.version >= (4, 2) else 'BLENDER_EEVEE'\nuse(engine)",
         [ENGINE],
@@ -376,6 +387,30 @@ TAKEN = {
         class Options:
             engine: str = 'BLENDER_EEVEE_NEXT'
         scene.render.engine = Options(engine='CYCLES').engine
+    """,
+    "a field with a value by its place": """
+        from dataclasses import dataclass
+        @dataclass
+        class Options:
+            samples: int
+            engine: str = 'BLENDER_EEVEE_NEXT'
+        scene.render.engine = Options(8, 'CYCLES').engine
+    """,
+    "fields with what is not seen": """
+        import dataclasses
+        @dataclasses.dataclass
+        class Options:
+            engine: str = 'BLENDER_EEVEE_NEXT'
+        scene.render.engine = Options(**{"engine": "CYCLES"}).engine
+    """,
+    "a field that is set later": """
+        from dataclasses import dataclass
+        @dataclass
+        class Options:
+            engine: str = 'BLENDER_EEVEE_NEXT'
+        options = Options()
+        options.engine = 'CYCLES'
+        scene.render.engine = options.engine
     """,
     "a member of an enumeration": """
         from enum import StrEnum
