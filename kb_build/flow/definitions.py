@@ -22,10 +22,10 @@ class FunctionDefinition:
 
     ``received`` joins what calls pass as far as it is known; ``unknown`` names the parameters for which some pass
     something else; ``returned`` is what it returns. ``seen`` is the state of the script's definitions at the last run;
-    ``used`` are the attributes that it reads from each name, ``asks_version`` whether it looks at Blender's version,
-    once they were asked for. ``file`` is where it stands, ``doubted`` what is doubted there, ``readings`` what the last
-    run took from other definitions, ``uses`` the calls that it made, ``carried`` what texts were found to be in it that
-    come from elsewhere.
+    ``used`` are the attributes that it reads from each name, ``takes_out`` the names that it takes something out of,
+    ``asks_version`` whether it looks at Blender's version, once they were asked for. ``file`` is where it stands,
+    ``doubted`` what is doubted there, ``readings`` what the last run took from other definitions, ``uses`` the calls
+    that it made, ``carried`` what texts were found to be in it that come from elsewhere.
 
     ``passed`` is what single calls pass; ``calls`` has a reading for each, where it was read so: a definition of its
     own, ``exact``, whose ``received`` is that alone. ``in_vain`` are those of the last of them that brought nothing.
@@ -46,6 +46,7 @@ class FunctionDefinition:
     seen: tuple[int, int] = (-1, -1)
     used: dict[str, set[str]] | None = None
     asks_version: bool | None = None
+    takes_out: frozenset[str] | None = None
     file: SourceFile | None = None
     doubted: Doubts = NO_DOUBTS
     readings: Readings = field(default_factory=Readings)

@@ -13,7 +13,7 @@ from kb_build.flow.shared_names import NONE_SHARED
 from kb_build.flow.texts import for_one_call, has_passed, has_texts, texts_in, without_texts
 from kb_build.flow.trees import default_values
 from kb_build.flow.trials import Trials
-from kb_build.flow.type_parts import HOLDING, parts
+from kb_build.flow.type_parts import HOLDING, by_names, parts
 from kb_build.flow.types import (
     NONE,
     UNKNOWN,
@@ -128,6 +128,10 @@ class Functions(Parameters, Trials):
                 found[argument.arg] = kept(given[argument.arg])
             elif (default := defaults.get(argument.arg)) is not None:
                 found[argument.arg] = types.get(default, UNKNOWN)
+        if arguments.kwarg is not None:
+            named = {argument.arg for argument in (*arguments.args, *arguments.kwonlyargs)}
+            further = {name: kept(kind) for name, kind in given.items() if name not in named}
+            found[arguments.kwarg.arg] = by_names(further)
         return found
 
     def _comes_surely(self, whole: dict[str, Type]) -> bool:

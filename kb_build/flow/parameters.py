@@ -9,7 +9,7 @@ from kb_build.flow.annotations import Annotations
 from kb_build.flow.contradictions import Contradictions
 from kb_build.flow.facts import PARAMETERS
 from kb_build.flow.trees import default_values, walk
-from kb_build.flow.type_parts import can_be_unsure, unsure
+from kb_build.flow.type_parts import can_be_unsure, given_away, unsure
 from kb_build.flow.types import (
     NONE,
     STR,
@@ -42,14 +42,17 @@ class Parameters(Contradictions, Annotations):
         defaults = default_values(arguments)
         for place, argument in enumerate((*positional, *arguments.kwonlyargs)):
             given = declared[place] if place < len(declared) else UNKNOWN
-            self.bind(argument.arg, self._parameter(function, argument, given, defaults.get(argument.arg)))
+            kind = self._parameter(function, argument, given, defaults.get(argument.arg))
+            # What some call passes may have been filled, or a default by an earlier call.
+            self.bind(argument.arg, kind if function.exact else given_away(kind))
         for rest in (arguments.vararg, arguments.kwarg):
             if rest is not None and rest.annotation is not None:
                 self.annotated(rest.annotation)
         if arguments.vararg is not None:
             self.bind(arguments.vararg.arg, Sequence("tuple", UNKNOWN))
         if arguments.kwarg is not None:
-            self.bind(arguments.kwarg.arg, Mapping(STR, UNKNOWN))
+            further = function.received.get(arguments.kwarg.arg) if function.exact else None
+            self.bind(arguments.kwarg.arg, further or Mapping(STR, UNKNOWN))
 
     def _parameter(  # noqa: PLR0911 - one return a source
         self, function: FunctionDefinition, argument: ast.arg, declared: Type, default: ast.expr | None

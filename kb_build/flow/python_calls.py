@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING
 from kb_build.flow.core import ANY
 from kb_build.flow.facts import PYTHON_NAMES
 from kb_build.flow.script_calls import ScriptCalls
+from kb_build.flow.texts import lessened
+from kb_build.flow.trees import TAKING_OUT
+from kb_build.flow.type_parts import by_names
 from kb_build.flow.types import (
     BOOL,
     FLOAT,
@@ -157,15 +160,16 @@ class PythonCalls(ScriptCalls):
 
     def _dictionary(self, call: ReadCall) -> Type:
         """``dict(name=value)``, ``dict(pairs)``."""
-        named = call.keywords
+        named, pairs = call.keywords, call.argument(0)
         if not call.node.args and "" not in named:
-            return Mapping(STR, union(named.values()), tuple(named.items()), is_empty=not named)
-        pairs = call.argument(0)
-        if isinstance(pairs, Mapping) and not named:
+            return by_names(named)
+        if named:
+            return Mapping(UNKNOWN, UNKNOWN)
+        if isinstance(pairs, Mapping):
             return pairs
         pair = self.iterated(pairs)
         key, value = pair.items if isinstance(pair, Tuple) and len(pair.items) == 2 else (UNKNOWN, UNKNOWN)
-        return Mapping(general(key), value) if not named else Mapping(UNKNOWN, UNKNOWN)
+        return Mapping(general(key), value)
 
     def _set_by_name(self, call: ReadCall) -> None:
         """``setattr(x, "name", value)``."""
@@ -244,6 +248,8 @@ class PythonCalls(ScriptCalls):
 
     def _method(self, receiver: Type, name: str, call: ReadCall) -> Type:  # noqa: PLR0911, PLR0912 - one case a method
         arguments, first = call.arguments, call.argument(0)
+        if name in TAKING_OUT and isinstance(receiver, (Sequence, Tuple, Mapping)):
+            self._hold(receiver, lessened(receiver), call)
         if isinstance(receiver, Plain):
             return _STRING_RESULTS.get(name, STR) if receiver.kind == "str" else UNKNOWN
         if isinstance(receiver, Collection):
@@ -302,12 +308,16 @@ class PythonCalls(ScriptCalls):
                 grown = Mapping(UNKNOWN, kind if receiver.is_empty else union((receiver.value, kind)))
             case _:
                 return
+        self._hold(receiver, grown, call)
+
+    def _hold(self, receiver: Type, now: Type, call: ReadCall) -> None:
+        """A list or a dictionary is another one behind the call of a method of it, wherever it is held."""
         held = self.here.scope.state.names
         self.spend(len(held))
         for name in [name for name, one in held.items() if one is receiver]:
-            self.bind(name, grown)
+            self.bind(name, now)
         match call.node.func:
             case ast.Attribute(value=ast.Attribute() | ast.Subscript() | ast.Call() as filled):
-                self.fill(filled, grown)
+                self.fill(filled, now)
             case _:
                 pass

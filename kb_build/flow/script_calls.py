@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.core import DEEPEST_RUN
 from kb_build.flow.narrowing import Narrowing
-from kb_build.flow.texts import passed
-from kb_build.flow.type_parts import bounded
+from kb_build.flow.texts import lessened, passed
+from kb_build.flow.trees import taken_out_of
+from kb_build.flow.type_parts import HOLDING, bounded
 from kb_build.flow.types import UNKNOWN, LocalClass, LocalFunction, LocalInstance, Type, general, join
 
 if TYPE_CHECKING:
@@ -53,11 +54,27 @@ class ScriptCalls(Narrowing):
             values = [callee.receiver, *values]
         given = self.pass_to(callee.number, values, call.keywords)
         self.run_now(callee.number)
+        self._take_out(function, call, bound=callee.receiver is not None)
         if has_starred or "" in given or function.running:
             # What it returns is not known where it was not read with what this call passes.
             is_read = function.running or not function.stale
             return (self.returned(callee.number) if is_read else None) or UNKNOWN
         return self.result_of_call(callee.number, given, call.node)
+
+    def _take_out(self, function: FunctionDefinition, call: ReadCall, *, bound: bool) -> None:
+        """A list or a dictionary that a function takes something out of has less behind the call."""
+        if function.takes_out is None:
+            function.takes_out = taken_out_of(function.node)
+        if not function.takes_out:
+            return
+        parameters = function.node.args
+        names = [argument.arg for argument in (*parameters.posonlyargs, *parameters.args)][bound:]
+        given = [*zip(names, call.node.args, strict=False)]
+        given += [(keyword.arg, keyword.value) for keyword in call.node.keywords if keyword.arg]
+        for name, node in given:
+            kind = self.here.types.get(node, UNKNOWN)
+            if name in function.takes_out and isinstance(kind, HOLDING):
+                self.fill(node, lessened(kind))
 
     def run_now(self, number: int) -> None:
         """Reads a function for what it returns, or for what it binds, unless it is known or too far inside."""

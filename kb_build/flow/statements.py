@@ -13,7 +13,8 @@ from kb_build.flow.expressions import is_decided
 from kb_build.flow.handlers import Handlers
 from kb_build.flow.imports import Imports
 from kb_build.flow.loops import Loops
-from kb_build.flow.type_parts import bounded
+from kb_build.flow.texts import lessened
+from kb_build.flow.type_parts import HOLDING, bounded
 from kb_build.flow.types import NONE, ClassObject, join, literal
 
 if TYPE_CHECKING:
@@ -70,6 +71,8 @@ class Statements(Assignments, Branches, Loops, Handlers, Imports, Defining):
                 if isinstance(target, ast.Attribute) and isinstance(owner, ClassObject):
                     continue
                 self.evaluate(target)
+                if isinstance(target, ast.Subscript) and isinstance(owner, HOLDING):
+                    self.fill(target.value, lessened(owner))
         return True
 
     def _global(self, node: ast.Global | ast.Nonlocal) -> bool:

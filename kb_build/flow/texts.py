@@ -7,7 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from kb_build.flow.type_parts import HOLDING, NAMES_PASSED, parts, with_parts
-from kb_build.flow.types import FLOAT, PASSED, Mapping, Plain, Tuple, Type, general
+from kb_build.flow.types import FLOAT, PASSED, Mapping, Plain, Sequence, Tuple, Type, general, union
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -57,6 +57,19 @@ def without_texts(kind: Type) -> Type:
     """A type of which no text is known, as one that many calls pass."""
     found = _each_plain(kind, general, numbers=True)
     return replace(found, items=()) if isinstance(found, Mapping) else found
+
+
+def lessened(kind: Type) -> Type:
+    """A list or a dictionary that something was taken out of: what was written out may not be in it any longer."""
+    match kind:
+        case Tuple(items=items):
+            return Sequence("list", union(map(without_texts, items)))
+        case Sequence():
+            return replace(kind, element=without_texts(kind.element))
+        case Mapping():
+            return replace(kind, key=without_texts(kind.key), items=())
+        case _:
+            return kind
 
 
 def _as_passed(kind: Plain) -> Type:

@@ -49,6 +49,8 @@ if sys.version_info >= (3, 12):
     _FIELDS[ast.TypeAlias] = ("name", "type_params", "value")
 # What is defined where it stands, and run elsewhere.
 APART = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
+# Methods that take something out of a list or a dictionary.
+TAKING_OUT = frozenset({"clear", "pop", "popitem", "remove"})
 # Lists in which None stands for what is not there; others hold nodes alone.
 _WITH_GAPS = frozenset({"keys", "kw_defaults"})
 
@@ -109,6 +111,20 @@ def nodes_in(parts: Iterable[ast.AST]) -> set[ast.AST]:
             found.add(node)
             waiting += children(node)
     return found
+
+
+def taken_out_of(node: ast.AST) -> frozenset[str]:
+    """The names that a function takes something out of: lists and dictionaries."""
+    found: set[str] = set()
+    for part in walk(node):
+        match part:
+            case ast.Attribute(value=ast.Name(id=name), attr=attr) if attr in TAKING_OUT:
+                found.add(name)
+            case ast.Subscript(value=ast.Name(id=name), ctx=ast.Del()):
+                found.add(name)
+            case _:
+                pass
+    return frozenset(found)
 
 
 def default_values(arguments: ast.arguments) -> dict[str, ast.expr]:

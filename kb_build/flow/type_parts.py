@@ -38,6 +38,7 @@ from kb_build.flow.types import (
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from collections.abc import Mapping as Rows
 
 DEEPEST_TYPE = 6  # parts within each other of what a name holds
 # What a dictionary's literal keys are, which some call has and others not.
@@ -77,6 +78,12 @@ def with_parts(kind: Type, change: Callable[[Type], Type]) -> Type:
             return replace(kind, key=change(kind.key), value=change(kind.value), items=items)
         case _:
             return kind
+
+
+def by_names(values: Rows[str, Type]) -> Mapping:
+    """The dictionary of what is given by names."""
+    names = union(Plain("str", name) for name in values)
+    return Mapping(names, union(values.values()), tuple(values.items()), is_empty=not values)
 
 
 def given_away(kind: Type) -> Type:

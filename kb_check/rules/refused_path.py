@@ -124,14 +124,25 @@ def _of_input(script: Script, call: CallSite, node: ast.expr) -> _Fault | None:
         return None
     before = text.removesuffix(followed.rest)
     key = INPUT_KEY.fullmatch(followed.rest.removeprefix('["').removesuffix('"]'))
-    now = ".".join(filter(None, (before, f"properties.inputs.{key[1] if key else 'Socket_2'}.value")))
-    quote = _quote(script, node) if key and not key[2] else ""
+    place = f"properties.inputs.{key[1] if key else 'Socket_2'}"
+    told = f"the path is `{before.replace(_PUT_IN, '…')}.{place}.value`"
+    if not before:  # what is no data-block takes paths to what it has itself alone
+        modifier = ast.unparse(call.node.func.value)
+        told = f'call `{modifier}.{place}.{call.callee.symbol.name}("value")`'
     return _Fault(
         "Inputs of a geometry-nodes modifier are no custom properties since Blender 5.2: "
-        f"the path is `{now.replace(_PUT_IN, '…')}`{'' if key else ', with the identifier of the input'}.",
-        NODES_MODIFIER, (), Fix("Write the property", (Edit(script.span(node), f"{quote}{now}{quote}"),), sure=True)
-        if quote and quote not in now else None,
+        f"{told}{'' if key else ', with the identifier of the input'}.", NODES_MODIFIER, (),
+        _at_input(script, call, node, before, place) if key and not key[2] else None,
     )  # fmt: skip
+
+
+def _at_input(script: Script, call: CallSite, node: ast.expr, before: str, place: str) -> Fix | None:
+    """``'modifiers["Array"]["Socket_2"]'`` → ``'modifiers["Array"].properties.inputs.Socket_2.value'``."""
+    if not before:
+        return _moved(script, call, node, place, "value")
+    quote, now = _quote(script, node), f"{before}.{place}.value"
+    edit = Edit(script.span(node), f"{quote}{now}{quote}")
+    return Fix("Write the property", (edit,), sure=True) if quote and quote not in now else None
 
 
 def _filled(node: ast.JoinedStr) -> str:

@@ -196,6 +196,26 @@ REFUSED = {
         """,
         [ENGINE],
     ),
+    "what a call passes by names of its own": (
+        """
+        def apply(node, **settings):
+            for name, value in settings.items():
+                node.inputs[name].default_value = value
+        apply(bsdf, Roughness=0.5)
+        apply(bsdf, Specular=0.5, Metallic=1.0)
+        """,
+        [SPECULAR],
+    ),
+    "one setting by a name of its own": (
+        """
+        def add_math(**settings):
+            node = tree.nodes.new('ShaderNodeMath')
+            for name, value in settings.items():
+                setattr(node, name, value)
+        add_math(operation='TIMES')
+        """,
+        ["bpy.types.ShaderNodeMath.operation:TIMES"],
+    ),
     "a branch of this Blender": (
         "engine = 'BLENDER_EEVEE_NEXT' if bpy.app.version >= (4, 2) else 'BLENDER_EEVEE'\nuse(engine)",
         [ENGINE],
@@ -426,6 +446,49 @@ TAKEN = {
         chosen = {'engine': 'BLENDER_EEVEE_NEXT'}
         if chosen['engine'] in engines:
             use(chosen['engine'])
+    """,
+    "what is taken out of a dictionary": """
+        settings = {"IOR": 1.4, "Specular": 0.5}
+        settings.pop("Specular")
+        for name, value in settings.items():
+            bsdf.inputs[name].default_value = value
+        settings = {"IOR": 1.4, "Specular": 0.5}
+        del settings["Specular"]
+        for name, value in settings.items():
+            bsdf.inputs[name].default_value = value
+        settings = {"Specular": 0.5}
+        settings.clear()
+        for name, value in settings.items():
+            bsdf.inputs[name].default_value = value
+    """,
+    "what is taken out of a list": """
+        names = ["IOR", "Specular"]
+        names.remove("Specular")
+        for name in names:
+            bsdf.inputs[name].default_value = 1.4
+        names = ["IOR", "Specular"]
+        del names[1]
+        for name in names:
+            bsdf.inputs[name].default_value = 1.4
+        names = ["Specular", "Specular"]
+        names.clear()
+        for name in names:
+            bsdf.inputs[name].default_value = 1.4
+    """,
+    "what a function takes out": """
+        def without(held, name):
+            held.pop(name)
+        settings = {"IOR": 1.4, "Specular": 0.5}
+        without(settings, "Specular")
+        for name, value in settings.items():
+            bsdf.inputs[name].default_value = value
+    """,
+    "what is taken out of names of its own": """
+        def apply(node, **settings):
+            settings.pop("Specular", None)
+            for name, value in settings.items():
+                node.inputs[name].default_value = value
+        apply(bsdf, Roughness=0.5, Specular=1.0)
     """,
     "a name that another function sets": """
         engine = 'BLENDER_EEVEE_NEXT'

@@ -178,6 +178,22 @@ RIGHT = {
             return cam
         choice([new("a")]).lens = 35
     """,
+    "a list that is one by default": """
+        def first(held=[]):
+            held.append(new("a"))
+            held[0].lens = 35
+        first(getattr(bpy, "held", [cam]))
+    """,
+    "a list that was filled by an earlier call": """
+        def first(is_camera, held=[]):
+            if is_camera:
+                held.append(cam)
+            else:
+                held.append(new("a"))
+            return held[0]
+        first(True)
+        first(False).lens = 35
+    """,
     "a list of an object's that a function fills": """
         def fill(held):
             held.append(cam)
