@@ -1,4 +1,5 @@
-"""In which mode the active object surely is where a script calls an operator, and of which type it is.
+"""In which mode the active object surely is where a script calls an operator, and of which type it is, or that there
+is none.
 
 A run is followed from statement to statement, through conditions, loops and the script's own functions. Whatever may
 change the mode out of sight ends what is known; an operator that runs in one mode only tells it again.
@@ -15,6 +16,8 @@ from typing import TYPE_CHECKING
 from kb_build.flow.trees import children, walk
 from kb_build.flow.types import Mapping
 from kb_check.calls.sites import calls, calls_by_node
+from kb_check.modes.absence import active_reads, lines_without_active, without_active
+from kb_check.modes.edit_bones import names_in
 from kb_check.modes.keeping import (
     LEFT,
     REMOVING,
@@ -25,16 +28,24 @@ from kb_check.modes.keeping import (
     own_names,
     sets_active,
 )
-from kb_check.modes.state import UNKNOWN, State, after_operator, has_to_do_with_modes, refusal
+from kb_check.modes.state import (
+    UNKNOWN,
+    Absence,
+    State,
+    after_operator,
+    has_to_do_with_modes,
+    lacks_active,
+    refusal,
+)
 from kb_check.running.context_managers import leaves_scene
 from kb_check.running.out_of_sight import knows_all
 from kb_check.script import once_per_script
-from kb_check.syntax.bindings import bindings
+from kb_check.syntax.bindings import bindings, iterated
 from kb_check.syntax.definitions import FUNCTIONS, FunctionDefinition
 from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Container, Iterable, Iterator, Sequence
 
     from kb_check.script import Script
 
@@ -43,15 +54,20 @@ _ENTERING = re.compile(
     r"|^(mode|poll|is_editmode)$"
 )
 _OF_MODES = re.compile(r"mode|poll")
+# What a condition, or a loop, names that may depend on there being an active object, or objects at all.
+_OF_ACTIVE = re.compile(r"object|active|select|mode|poll")
 _MOST_VISITS = 2000
 
 _CONDITIONAL = (ast.IfExp, ast.BoolOp, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 
 
 @once_per_script
-def states(script: Script) -> dict[ast.Call, State]:
-    """Of each call of an operator that has something to do with modes: what is known before it."""
-    if not any(has_to_do_with_modes(call) for call in calls(script)):
+def states(script: Script) -> dict[ast.expr, State]:
+    """Of each call of an operator, and of each place that reads the active object: what is known before it.
+
+    Nothing where no call of an operator has to do with modes, and nothing leaves the script without active object.
+    """
+    if not any(has_to_do_with_modes(call) for call in calls(script)) and not lines_without_active(script):
         return {}
     with suppress(RecursionError):
         return _Run(script).seen
@@ -69,7 +85,7 @@ class _Run:
 
     def __init__(self, script: Script) -> None:
         self.script = script
-        self.seen: dict[ast.Call, State] = {}
+        self.seen: dict[ast.expr, State] = {}
         self._calls = calls_by_node(script)
         self._functions = own_functions(script)
         self._names = own_names(script)
@@ -77,7 +93,8 @@ class _Run:
         self._running: list[FunctionDefinition] = []
         self._returned: list[list[State]] = []
         self._jumped: list[list[State]] = []
-        self._calling_lines = {node.lineno for node in script.all(ast.Call, *LEFT)}
+        self._reads = active_reads(script) if lines_without_active(script) else frozenset[ast.expr]()
+        self._calling_lines = {node.lineno for node in (*script.all(ast.Call, *LEFT), *self._reads)}
         self._made_in: dict[ast.AST, list[tuple[ast.expr, bool]]] = {}
         stores = [node for node in script.all(ast.Attribute) if not isinstance(node.ctx, ast.Load)]
         self._storing_lines = {
@@ -98,6 +115,7 @@ class _Run:
     def _telling_lines(self) -> set[int]:
         """The lines that have to do with modes, themselves or by the script's own functions that they call."""
         lines = {node.lineno for node, call in self._calls.items() if has_to_do_with_modes(call)}
+        lines |= lines_without_active(self.script)
         asked: set[str] = set()
         while True:
             names = {name for name, node in self._functions.items() if not lines.isdisjoint(_lines(node))}
@@ -136,9 +154,12 @@ class _Run:
             case ast.Match():
                 subject = self._expressions([node.subject], state)
                 after = self._all_ways([case.body for case in node.cases], State(muted=subject.muted))
+            case ast.Assign():
+                evaluated = self._expressions([node.value, *node.targets], state)
+                after = self._stores(node, evaluated)
             case _:
                 after = self._simple(node, self._stores(node, self._expressions([node], state)))
-        return after
+        return without_active(self.script, node, after) if after else None
 
     def _simple(self, node: ast.stmt, state: State) -> State | None:
         """What is known behind a statement that has none within it; a run may leave with it."""
@@ -152,10 +173,15 @@ class _Run:
     def _if(self, node: ast.If, state: State) -> State | None:
         words = {part.attr for part in walk(node.test) if isinstance(part, ast.Attribute)}
         asks = self._asks(node.test)
+        asks_for_active = self._asks_for_active(node.test)
         inside = replace(state, mode="" if asks else state.mode, kind="" if words else state.kind)
+        inside = _present(inside) if asks_for_active else inside
         ways = self._block(node.body, inside), self._block(node.orelse, inside) if node.orelse else state
         after = _join(*ways)
-        return replace(after, mode="") if after and asks and None in ways else after
+        if after is None or None not in ways:
+            return after
+        after = replace(after, mode="") if asks else after
+        return _present(after) if asks_for_active else after
 
     def _asks(self, test: ast.expr) -> bool:
         """Whether a condition may have to do with the mode: names it, or depends on what callers say."""
@@ -170,6 +196,25 @@ class _Run:
                 return True
         return False
 
+    def _asks_for_active(self, node: ast.expr) -> bool:
+        """Whether what a condition or a loop goes by may depend on there being an active object, or objects at all."""
+        if not lines_without_active(self.script):
+            return False
+        parts = [*walk(node)]
+        for name in names_in(node):
+            if name in self._names:
+                return True
+            values = bindings(self.script).get(name, [])
+            through = iterated(self.script).get(name, [])
+            if values.count(None) > len(through):
+                return True
+            parts += (part for value in (*values, *through) if value is not None for part in walk(value))
+        return any(
+            isinstance(part, (ast.Name, ast.Attribute))
+            and _OF_ACTIVE.search(part.id if isinstance(part, ast.Name) else part.attr)
+            for part in parts
+        )
+
     def _all_ways(self, bodies: Iterable[Sequence[ast.stmt]], state: State) -> State | None:
         after: State | None = state
         for body in bodies:
@@ -183,6 +228,8 @@ class _Run:
             if isinstance(node, ast.While):
                 at_test = self._expressions([node.test], state)
                 at_test = State(muted=state.muted) if self._asks(node.test) else at_test
+            if self._asks_for_active(node.test if isinstance(node, ast.While) else node.iter):
+                at_test = _present(at_test)
             after = self._block(node.body, at_test)
             for jumped in self._jumped.pop():
                 after = _join(after, jumped)
@@ -239,7 +286,9 @@ class _Run:
         """What is known after the calls within expressions, in the order in which they are made."""
         for root in roots:
             for call, is_sure in self._made(root):
-                if not isinstance(call, ast.Call):
+                if call in self._reads:
+                    self._see(call, state if is_sure else State(muted=True))
+                elif not isinstance(call, ast.Call):
                     state = State(muted=state.muted)
                 elif is_sure:
                     state = self._call(call, state)
@@ -253,7 +302,8 @@ class _Run:
         if isinstance(root, (ast.stmt, ast.expr)) and self._calling_lines.isdisjoint(_lines(root)):
             return []
         if (found := self._made_in.get(root)) is None:
-            found = self._made_in[root] = sorted(_made_calls(root), key=lambda pair: _end(pair[0]))
+            made = _made_calls(root, self._reads)
+            found = self._made_in[root] = sorted(made, key=lambda pair: _end(pair[0]))
         return found
 
     def _call(self, node: ast.Call, state: State) -> State:
@@ -264,7 +314,8 @@ class _Run:
         if is_harmless(self.script, node):
             return state
         removes = isinstance(node.func, ast.Attribute) and node.func.attr in REMOVING
-        return State("OBJECT" if removes and state.mode == "OBJECT" else "", muted=state.muted)
+        after = State("OBJECT" if removes and state.mode == "OBJECT" else "", muted=state.muted)
+        return replace(after, absence=state.absence) if removes and node in self._calls else after
 
     def _operator(self, node: ast.Call, state: State) -> State:
         call = self._calls.get(node)
@@ -274,10 +325,15 @@ class _Run:
         plain = all(isinstance(value, ast.Constant) for value in node.args)
         if not plain:
             return State(muted=state.muted)
-        self.seen[node] = self.seen.get(node, state).joined(state)
+        self._see(node, state)
         if refusal(self.script, call, state):
             return state
+        if lacks_active(call, state):
+            return _present(state)  # once is enough
         return replace(after_operator(call, state), muted=state.muted)
+
+    def _see(self, node: ast.expr, state: State) -> None:
+        self.seen[node] = self.seen.get(node, state).joined(state)
 
     def _stores(self, statement: ast.stmt, state: State) -> State:
         """What is known after what a statement assigns."""
@@ -292,6 +348,11 @@ class _Run:
                 stays = state.mode == "OBJECT" and not enters_modes(self.script)
                 state = State("OBJECT" if stays else "", muted=state.muted)
         return state
+
+
+def _present(state: State) -> State:
+    """What is known where there may be an active object."""
+    return replace(state, absence=Absence.UNKNOWN)
 
 
 def _join(first: State | None, second: State | None) -> State | None:
@@ -316,14 +377,16 @@ def _end(node: ast.expr) -> tuple[int, int]:
     return node.end_lineno or 0, node.end_col_offset or 0
 
 
-def _made_calls(root: ast.AST) -> Iterator[tuple[ast.expr, bool]]:
-    """The calls within a statement or an expression, and what lets others run; whether each is surely made, once."""
+def _made_calls(root: ast.AST, reads: Container[ast.AST]) -> Iterator[tuple[ast.expr, bool]]:
+    """The calls within a statement or an expression, what lets others run, and what reads the active object; whether
+    each is surely made, once.
+    """
     waiting = [(root, True)]
     while waiting:
         node, is_sure = waiting.pop()
         if isinstance(node, (ast.Lambda, *FUNCTIONS, ast.ClassDef)):
             continue
-        if isinstance(node, (ast.Call, *LEFT)):
+        if isinstance(node, (ast.Call, *LEFT)) or (isinstance(node, ast.expr) and node in reads):
             yield node, is_sure
         is_sure = is_sure and not isinstance(node, _CONDITIONAL)
         waiting += [(child, is_sure) for child in children(node)]

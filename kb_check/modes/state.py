@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import ast
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from enum import IntEnum
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.flags import operator_active
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 MODE_SET = frozenset({"bpy.ops.object.mode_set", "bpy.ops.object.mode_set_with_submode"})
 EDIT_TOGGLE = "bpy.ops.object.editmode_toggle"
-_FACTORY = "bpy.ops.wm.read_factory_settings"
+_FACTORY, _HOME = "bpy.ops.wm.read_factory_settings", "bpy.ops.wm.read_homefile"
 _ADDED = (
     (re.compile(r"bpy\.ops\.mesh\.primitive_\w+_add"), "MESH"),
     (re.compile(r"bpy\.ops\.curve\.primitive_\w+_add"), "CURVE"),
@@ -46,6 +47,13 @@ _KEEPING = re.compile(
     r"shade_\w+|shape_key_\w+|particle_system_\w+|origin_set|transform_apply|select_all)|rigidbody\.object_\w+|"
     r"transform\.(translate|rotate|resize)|anim\.keyframe_\w+|ed\.undo_push|wm\.save\w+)"
 )
+# Operators behind which no object is active where none was before.
+_MAKING_NONE_ACTIVE = re.compile(
+    r"bpy\.ops\.(object\.(select_all|delete|shade_\w+|transform_apply|origin_set|(location|rotation|scale|parent)_clear)|"
+    r"transform\.(translate|rotate|resize)|outliner\.orphans_purge|ed\.undo_push|render\.render|export_\w+\.\w+|"
+    r"ptcache\.\w+|wm\.(save\w*|\w+_export)|preferences\.\w+|screen\.\w+|(material|world|texture|image)\.new)"
+)
+_NEEDING_ACTIVE = frozenset({"active", "selected"})
 # What enters a mode, or runs in it alone, and so tells which types of objects have it.
 _HAVING = {
     "EDIT": EDIT_TOGGLE, "POSE": "bpy.ops.pose.transforms_clear",
@@ -60,9 +68,17 @@ _FORMER = re.compile(r"_(GPENCIL)$")
 _FOLLOWED = frozenset({"OBJECT", "EDIT", "POSE"})
 
 
+class Absence(IntEnum):
+    """How surely no object is active. ``DELETED``: all that can be selected were, which leaves hidden ones."""
+
+    UNKNOWN = 0
+    DELETED = 1
+    SURE = 2
+
+
 @dataclass(frozen=True, slots=True)
 class State:
-    """The active object: its ``mode`` and its type, ``kind``; empty where they are not known.
+    """The active object: its ``mode`` and its type, ``kind``; empty where they are not known; or its ``absence``.
 
     ``muted``: the call may not be come to, or the script is ready for its error.
     """
@@ -70,6 +86,7 @@ class State:
     mode: str = ""
     kind: str = ""
     muted: bool = False
+    absence: Absence = Absence.UNKNOWN
 
     def joined(self, other: State) -> State:
         """What is known where two ways meet."""
@@ -77,6 +94,7 @@ class State:
             self.mode if self.mode == other.mode else "",
             self.kind if self.kind == other.kind else "",
             self.muted or other.muted,
+            min(self.absence, other.absence),
         )
 
 
@@ -125,6 +143,12 @@ def refusal(script: Script, call: CallSite, state: State) -> str:
     return ""
 
 
+def lacks_active(call: CallSite, state: State) -> bool:
+    """Whether an operator is refused because no object is active."""
+    needs = call.callee.symbol.needs
+    return state.absence > Absence.UNKNOWN and needs is not None and needs.active in _NEEDING_ACTIVE
+
+
 def _is_of_active(operator: Symbol, state: State) -> bool:
     """Whether an operator works on the active object: those of poses take the armature that deforms it, too."""
     return state.kind == "ARMATURE" or not operator.path.startswith("bpy.ops.pose.")
@@ -169,6 +193,16 @@ def modes_text(modes: Sequence[str]) -> str:
 def after_operator(call: CallSite, state: State) -> State:
     """What is known after an operator that was not refused."""
     path = call.callee.symbol.path
+    after = _after_operator(call, path, state)
+    if _MAKING_NONE_ACTIVE.fullmatch(path):
+        return replace(after, absence=state.absence)
+    is_emptying = path in (_FACTORY, _HOME) and literal_argument(call, "use_empty") is True
+    if is_emptying and "app_template" not in call.given and not call.has_unpacking:
+        return State("OBJECT", absence=Absence.SURE)
+    return after
+
+
+def _after_operator(call: CallSite, path: str, state: State) -> State:
     if path in MODE_SET:
         mode = literal_argument(call, "mode")
         return State(mode if isinstance(mode, str) and "toggle" not in call.given else "", state.kind)

@@ -4,7 +4,11 @@
 bpy.ops.wm.read_factory_settings(use_empty=True)
 bpy.context.scene.world.color = (0, 0, 0)  # reported: scene.world = bpy.data.worlds.new("World") fills it
 bpy.data.objects["Cube"].hide_render = True  # reported: that of the startup file is gone
+bpy.ops.object.camera_add()
+bpy.ops.render.render()  # reported: the scene has no camera before scene.camera = camera
 ```
+
+Where a script only deletes all objects, their names and the scene's camera are gone.
 
 Of what a new file has not either, a script that empties none is told, too, as a note: it may be run with another file.
 
@@ -26,6 +30,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.resolved import calls_only, member_path
+from kb_check.calls.sites import calls
 from kb_check.findings import Finding
 from kb_check.rule import Rule
 from kb_check.running.background import is_called_by_others, lines_of_others
@@ -42,6 +47,7 @@ if TYPE_CHECKING:
     from kb_build.flow.types import Resolution
     from kb_check.findings import Severity
     from kb_check.running.read_pointers import PointerRead
+    from kb_check.scene.emptied import What
     from kb_check.script import Script
 
 # Operators that fill none of what is looked for; those that are called read an empty file.
@@ -56,24 +62,27 @@ _EDITING = (
 class _Empty:
     """What an empty file does not have: what may be done beside, and what fills it.
 
-    ``asked`` are names that ask for it besides its own; ``is_new`` says that a new file does not have it either.
+    ``asked`` are names that ask for it besides its own; ``is_new`` says that a new file does not have it either;
+    ``what`` is emptied where it is gone.
     """
 
     beside: re.Pattern[str]
     filled_by: str
     asked: frozenset[str] = frozenset()
     is_new: bool = False
+    what: What = "file"
 
 
-_ACTIVE = _Empty(
-    re.compile(_PLAIN), "view_layer.objects.active = obj", frozenset({"active", "object", "active_object"})
-)
+_CAMERA = f"{T}Scene.camera"
 _EMPTY = {
     f"{T}Scene.world": _Empty(
         re.compile(f"{_PLAIN}|{_EDITING}"), 'scene.world = bpy.data.worlds.new("World")'
     ),
-    f"{T}Scene.camera": _Empty(
-        re.compile(rf"(?!bpy\.ops\.object\.\w*(add|camera))({_PLAIN}|{_EDITING})"), "scene.camera = obj"
+    _CAMERA: _Empty(
+        re.compile(rf"(?!bpy\.ops\.object\.(add|add_named|\w*as_camera)$)({_PLAIN}|{_EDITING})"),
+        "scene.camera = obj",
+        frozenset({"temp_override"}),  # in a 3D view, an operator that adds a camera gives it to the scene
+        what="objects",
     ),
     f"{T}Scene.compositing_node_group": _Empty(
         re.compile(rf"(?!bpy\.ops\.node\.new_compositing)({_PLAIN}|{_EDITING})"),
@@ -85,9 +94,6 @@ _EMPTY = {
         "bpy.ops.rigidbody.world_add()",
         is_new=True,
     ),
-    f"{T}LayerObjects.active": _ACTIVE,
-    f"{T}Context.object": _ACTIVE,
-    f"{T}Context.active_object": _ACTIVE,
 }
 _NEW = {path: empty for path, empty in _EMPTY.items() if empty.is_new}
 # What the startup file has that an empty one has not, and the operators that bring nothing of the name.
@@ -95,22 +101,39 @@ _STARTUP = {
     "objects": {"Cube", "Camera", "Light"}, "meshes": {"Cube"}, "cameras": {"Camera"}, "lights": {"Light"},
     "materials": {"Material"}, "worlds": {"World"}, "collections": {"Collection"},
 }  # fmt: skip
-_BRINGING_NOTHING = re.compile(_PLAIN)
+_OF_OBJECTS = "objects"
+_BRINGING_NOTHING = re.compile(
+    rf"{_PLAIN}|bpy\.ops\.(object\.(select_all|delete|mode_set|modifier_\w+|shade_\w+|origin_set|transform_apply)|"
+    r"transform\.\w+|mesh\.(?!primitive_cube)\w+)"
+)
+_RENDER = "bpy.ops.render.render"
+# What a script names that may render without a camera.
+_WITHOUT_CAMERA = re.compile(r"sequence|compositing|^Compositor")
 
 
 def _check(script: Script) -> Iterator[Finding]:
     if not knows_all(script):
         return
-    if empties_only(script):
-        read = _first(one for one in _read(script, _EMPTY) if _is_run_later(script, one.row, one.node))
-        for path, node in read.items():
-            yield _empty_finding(script, node, path, "an empty", "warning")
+    if empties_only(script, "objects"):
+        later = (
+            one
+            for one in _read(script, _EMPTY)
+            if _is_run_later(script, one.row, one.node, _EMPTY[one.path].what)
+        )
+        for path, node in _first(later).items():
+            yield _empty_finding(script, node, path, _emptied(_EMPTY[path].what), "warning")
         yield from _looked_up(script)
-    elif not is_called_by_others(script) and "libraries" not in named_words(script):
+        yield from _rendered(script)
+    is_others = empties_only(script, "file") or is_called_by_others(script)
+    if not is_others and "libraries" not in named_words(script):
         given = lines_of_others(script)
         read = _first(one for one in _read(script, _NEW) if one.node.lineno not in given)
         for path, node in read.items():
-            yield _empty_finding(script, node, path, "a new", "note")
+            yield _empty_finding(script, node, path, "in a new file", "note")
+
+
+def _emptied(what: What) -> str:
+    return "in an empty file" if what == "file" else "when all objects are deleted"
 
 
 def _read(script: Script, empty: Container[str]) -> Iterator[PointerRead]:
@@ -126,8 +149,8 @@ def _first(found: Iterable[PointerRead]) -> dict[str, ast.Attribute]:
     return first
 
 
-def _empty_finding(script: Script, node: ast.Attribute, path: str, file: str, severity: Severity) -> Finding:
-    told = f"`{path}` is None in {file} file, and nothing in this script fills it: `{_EMPTY[path].filled_by}` does."
+def _empty_finding(script: Script, node: ast.Attribute, path: str, where: str, severity: Severity) -> Finding:
+    told = f"`{path}` is None {where}, and nothing in this script fills it: `{_EMPTY[path].filled_by}` does."
     return Finding(RULE.id, severity, script.name_span(node), told, path)
 
 
@@ -147,19 +170,39 @@ def _looked_up(script: Script) -> Iterator[Finding]:
                 row = script.analysis.resolutions.get(collection)
                 path = member_path(script, collection)
                 is_gone = path == f"{T}BlendData.{name}" and not _is_named(script, key)
-                if row and is_gone and _is_run_later(script, row, node):
+                what: What = "objects" if name == _OF_OBJECTS else "file"
+                if row and is_gone and _is_run_later(script, row, node, what):
                     yield Finding(
                         RULE.id, "warning", script.span(node),
-                        f"An empty file has no `bpy.data.{name}[{key!r}]`, and nothing in this script makes one.",
+                        f"There is no `bpy.data.{name}[{key!r}]` {_emptied(what)}, and nothing in this script makes "
+                        "one.",
                         path,
                     )  # fmt: skip
             case _:
                 pass
 
 
-def _is_run_later(script: Script, row: Resolution, node: ast.expr) -> bool:
+def _rendered(script: Script) -> Iterator[Finding]:
+    """Calls that render a scene without a camera."""
+    rendering = [call for call in calls(script) if call.callee.symbol.path == _RENDER]
+    if not rendering or not _stays_empty(script, _CAMERA):
+        return
+    if any(map(_WITHOUT_CAMERA.search, named_words(script))):
+        return
+    for call in rendering:
+        row = script.analysis.resolutions.get(call.node)
+        if row and call.given.isdisjoint({"scene"}) and _is_run_later(script, row, call.node, "objects"):
+            yield Finding(
+                RULE.id, "warning", script.span(call.node),
+                f"`{_RENDER}` fails without a camera, and nothing in this script gives the scene one: "
+                f"`{_EMPTY[_CAMERA].filled_by}` does.",
+                _RENDER,
+            )  # fmt: skip
+
+
+def _is_run_later(script: Script, row: Resolution, node: ast.expr, what: What) -> bool:
     statement = row.statement
-    return statement is not None and not is_tried(script, node) and is_emptied_before(script, statement)
+    return statement is not None and not is_tried(script, node) and is_emptied_before(script, statement, what)
 
 
 def _stays_empty(script: Script, path: str) -> bool:

@@ -1,14 +1,17 @@
-"""Where a script has surely made the file an empty one before: ``bpy.ops.wm.read_factory_settings(use_empty=True)``."""
+"""Where a script has surely made the file an empty one before: ``bpy.ops.wm.read_factory_settings(use_empty=True)``;
+or has at least left it no objects.
+"""
 
 from __future__ import annotations
 
 import ast
 from collections import Counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from kb_build.flow.trees import children, walk
 from kb_check.calls.resolved import callee_path
-from kb_check.script import once_per_script
+from kb_check.scene.deleted import deleting_all, deleting_selected
+from kb_check.script import once_for_each, once_per_script
 from kb_check.syntax.bodies import owners, places
 from kb_check.syntax.definitions import FunctionDefinition
 from kb_check.syntax.literals import functions
@@ -19,19 +22,21 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 EMPTYING = frozenset({"bpy.ops.wm.read_factory_settings", "bpy.ops.wm.read_homefile"})
+What = Literal["file", "objects"]  # that is emptied: an empty file has no objects
 
 
-def is_emptied_before(script: Script, statement: ast.stmt) -> bool:
-    """Whether the file surely is emptied before a statement is come to."""
-    is_after, function = _standing(script, statement)
-    return is_after or (function is not None and function in _called_after(script))
+def is_emptied_before(script: Script, statement: ast.stmt, what: What = "file") -> bool:
+    """Whether the file, or its objects, surely are emptied before a statement is come to."""
+    is_after, function = _standing(script, statement, what)
+    return is_after or (function is not None and function in _called_after(script, what))
 
 
-@once_per_script
-def empties_only(script: Script) -> bool:
-    """Whether every file that a script reads is an empty one, and there is one."""
+@once_for_each
+def empties_only(script: Script, what: What) -> bool:
+    """Whether every file that a script reads is an empty one, and something is emptied."""
     calls = [node for node in script.all(ast.Call) if callee_path(script, node) in EMPTYING]
-    return bool(calls) and all(map(_is_empty, calls))
+    deletes = what == "objects" and bool(deleting_all(script) | deleting_selected(script))
+    return (bool(calls) or deletes) and all(map(_is_empty, calls))
 
 
 def _is_empty(call: ast.Call) -> bool:
@@ -41,10 +46,12 @@ def _is_empty(call: ast.Call) -> bool:
     )
 
 
-@once_per_script
-def _emptying(script: Script) -> frozenset[ast.stmt]:
-    """The statements that empty the file, or call a function of the script's that surely does."""
+@once_for_each
+def _emptying(script: Script, what: What) -> frozenset[ast.stmt]:
+    """The statements that empty it, or call a function of the script's that surely does."""
     found: list[ast.stmt] = []
+    if what == "objects":
+        found += deleting_all(script) | deleting_selected(script)
     callers: dict[str, list[ast.stmt]] = {}
     for node in script.all(ast.Expr):
         match node.value:
@@ -74,12 +81,12 @@ def _surely_come_to(body: list[ast.stmt]) -> Iterator[ast.stmt]:
             return
 
 
-def _standing(script: Script, statement: ast.stmt) -> tuple[bool, FunctionDefinition | None]:
-    """Whether a statement stands behind what empties the file, and if not, the function that it is in."""
+def _standing(script: Script, statement: ast.stmt, what: What) -> tuple[bool, FunctionDefinition | None]:
+    """Whether a statement stands behind what empties it, and if not, the function that it is in."""
     here: ast.AST | None = statement
     while isinstance(here, ast.stmt) and here in places(script):
         body, place = places(script)[here]
-        if _first_emptying(script).get(body[0], place) < place:
+        if _first_emptying(script, what).get(body[0], place) < place:
             return True, None
         here = owners(script)[here]
         if isinstance(here, FunctionDefinition):
@@ -87,20 +94,20 @@ def _standing(script: Script, statement: ast.stmt) -> tuple[bool, FunctionDefini
     return False, None
 
 
-@once_per_script
-def _first_emptying(script: Script) -> dict[ast.stmt, int]:
-    """First statement of a body → the place there of the first one that empties the file."""
+@once_for_each
+def _first_emptying(script: Script, what: What) -> dict[ast.stmt, int]:
+    """First statement of a body → the place there of the first one that empties it."""
     found: dict[ast.stmt, int] = {}
-    for statement in _emptying(script):
+    for statement in _emptying(script, what):
         if statement in places(script):
             body, place = places(script)[statement]
             found[body[0]] = min(place, found.get(body[0], place))
     return found
 
 
-@once_per_script
-def _called_after(script: Script) -> frozenset[ast.AST]:
-    """The functions that the script calls, and only behind what empties the file."""
+@once_for_each
+def _called_after(script: Script, what: What) -> frozenset[ast.AST]:
+    """The functions that the script calls, and only behind what empties it."""
     named: dict[str, list[ast.Name]] = {}
     for node in script.all(ast.Name):
         if isinstance(node.ctx, ast.Load):
@@ -109,7 +116,7 @@ def _called_after(script: Script) -> frozenset[ast.AST]:
     missing: Counter[ast.AST] = Counter()  # functions that have to be called so first
     users: dict[ast.AST, list[ast.AST]] = {}
     for name, function in functions(script).items():
-        outer = None if function.decorator_list else _callers(script, named.get(name, []))
+        outer = None if function.decorator_list else _callers(script, named.get(name, []), what)
         if outer is None:
             continue
         missing[function] = len(outer)
@@ -125,8 +132,8 @@ def _called_after(script: Script) -> frozenset[ast.AST]:
     return frozenset(found)
 
 
-def _callers(script: Script, named: list[ast.Name]) -> list[FunctionDefinition] | None:
-    """The functions in which another one is called where the file may not be empty yet.
+def _callers(script: Script, named: list[ast.Name], what: What) -> list[FunctionDefinition] | None:
+    """The functions in which another one is called where it may not be empty yet.
 
     None where it is never called, used for more than that, or called so in no function.
     """
@@ -134,7 +141,7 @@ def _callers(script: Script, named: list[ast.Name]) -> list[FunctionDefinition] 
     for node in named:
         call = script.calls_of.get(node)
         statement = _around(script).get(call) if call else None
-        is_after, function = _standing(script, statement) if statement else (False, None)
+        is_after, function = _standing(script, statement, what) if statement else (False, None)
         if not is_after:
             if function is None:
                 return None

@@ -31,6 +31,16 @@ def bindings(script: Script) -> dict[str, list[ast.expr | None]]:
     return found
 
 
+@once_per_script
+def iterated(script: Script) -> dict[str, list[ast.expr]]:
+    """Name → what the loops go through that bind it."""
+    found: dict[str, list[ast.expr]] = {}
+    for node in script.all(ast.For, ast.AsyncFor, ast.comprehension):
+        if isinstance(node.target, ast.Name):
+            found.setdefault(node.target.id, []).append(node.iter)
+    return found
+
+
 def once_bound(script: Script, node: ast.expr) -> ast.expr:
     """The one value that a name has, or else the expression itself."""
     values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else []
