@@ -102,6 +102,7 @@ class _Run:
         }
         self._parameters = {node.arg for node in script.all(ast.arg)}
         self._visits = self._finals = 0
+        self._is_left_edited = False  # an object may be in Edit Mode that is no longer active
         self._block(script.tree.body, UNKNOWN)
         direct = {node.func.id for node in script.all(ast.Call) if isinstance(node.func, ast.Name)}
         handed_on = _handed_on(script)
@@ -312,6 +313,8 @@ class _Run:
         if isinstance(node.func, ast.Name) and (function := self._functions.get(node.func.id)):
             return self._function(function, state)
         if is_harmless(self.script, node):
+            if (site := self._calls.get(node)) and has_to_do_with_modes(site) and not self._is_left_edited:
+                self._see(node, state)
             return state
         removes = isinstance(node.func, ast.Attribute) and node.func.attr in REMOVING
         after = State("OBJECT" if removes and state.mode == "OBJECT" else "", muted=state.muted)
@@ -346,6 +349,7 @@ class _Run:
                 state = State(muted=state.muted)
             elif sets_active(self.script, node):
                 stays = state.mode == "OBJECT" and not enters_modes(self.script)
+                self._is_left_edited |= state.mode == "EDIT"
                 state = State("OBJECT" if stays else "", muted=state.muted)
         return state
 

@@ -64,6 +64,9 @@ _HAVING = {
 # The modes of a type of objects that some versions lack, which may list them all the same.
 _FORMER = re.compile(r"_(GPENCIL)$")
 
+# Functions that need the mesh that they are given in Edit Mode.
+_OF_EDITED = frozenset({"bmesh.from_edit_mesh", "bmesh.update_edit_mesh"})
+
 # The modes in which operators are known to be refused: in those of paint and sculpture, masks let more run.
 _FOLLOWED = frozenset({"OBJECT", "EDIT", "POSE"})
 
@@ -101,15 +104,14 @@ class State:
 UNKNOWN = State()
 
 
-def modes_wanted(operator: Symbol) -> Wanted | None:
-    """The modes in which an operator runs; None where any will do, or not all are known."""
-    return operator_active(operator)[1]
+def modes_wanted(symbol: Symbol) -> Wanted | None:
+    """The modes in which an operator or a function runs; None where any will do, or not all are known."""
+    return Wanted(("EDIT",)) if symbol.path in _OF_EDITED else operator_active(symbol)[1]
 
 
 def has_to_do_with_modes(call: CallSite) -> bool:
-    """Whether a call is of an operator that wants a mode, or enters one."""
-    symbol = call.callee.symbol
-    return symbol.kind == "operator" and (symbol.path in MODE_SET or modes_wanted(symbol) is not None)
+    """Whether a call is of an operator or a function that wants a mode, or enters one."""
+    return call.callee.symbol.path in MODE_SET or modes_wanted(call.callee.symbol) is not None
 
 
 def literal_argument(call: CallSite, name: str) -> object:
@@ -141,6 +143,11 @@ def refusal(script: Script, call: CallSite, state: State) -> str:
     if types and state.kind and not modes.is_others and not types.takes(state.kind):
         return f"does not run with {with_article(state.kind)} object, which is the active one here"
     return ""
+
+
+def keeps_active(path: str) -> bool:
+    """Whether an operator leaves the same object active in its mode, and the same ones selected."""
+    return _KEEPING.fullmatch(path) is not None
 
 
 def lacks_active(call: CallSite, state: State) -> bool:

@@ -3,8 +3,13 @@
 ```python
 bpy.data.objects.remove(ob)
 print(ob.name)  # reported: keep the name before
+bpy.ops.object.join()  # the active object takes in the other selected ones
+other.name  # reported
 bm.free()
 bm.verts.ensure_lookup_table()  # reported
+bm = bmesh.from_edit_mesh(mesh)
+bpy.ops.object.mode_set(mode="OBJECT")
+bm.verts  # reported: it goes with Edit Mode
 instances = list(depsgraph.object_instances)
 instances[0].object  # reported: [i.object.original for i in depsgraph.object_instances]
 ```
@@ -25,14 +30,15 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Instance, Sequence, Tuple, Type
 from kb_build.symbols.api_names import TYPES as T
-from kb_check.calls.resolved import member_path
+from kb_check.calls.resolved import called_operators, member_path
 from kb_check.calls.sites import calls_by_node
 from kb_check.findings import Finding
 from kb_check.modes.edit_bones import surely_run
 from kb_check.rule import Rule
 from kb_check.running.out_of_sight import computes_names
 from kb_check.running.tried import is_tried
-from kb_check.scene.removed import Removed, may_remove
+from kb_check.scene.held_objects import JOIN, HeldObjects
+from kb_check.scene.removed import Removal, Removed, may_remove
 from kb_check.script import once_per_script
 from kb_check.syntax.bodies import bodies
 from kb_check.syntax.literals import times_bound
@@ -43,7 +49,6 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _PASSING = f"{T}DepsgraphObjectInstance"
-_BMESH = "bmesh.types."
 _OPERATORS = "bmesh.ops."
 # What may be asked of a part of a BMesh, and of itself, that is gone.
 _KEPT = frozenset({"is_valid", "free"})
@@ -52,21 +57,26 @@ _LISTS = frozenset({"list", "tuple", "set"})
 
 def _check(script: Script) -> Iterator[Finding]:
     yield from _passed(script)
-    if computes_names(script) or not may_remove(script):
+    joins = JOIN in called_operators(script)
+    if computes_names(script) or not (joins or may_remove(script)):
         return
     for body in bodies(script):
-        removed = Removed(script)
+        removed, objects = Removed(script), HeldObjects(script)
         for statement in body:
             if removed.gone:
                 yield from _used(script, statement, removed)
             removed.pass_by(statement)
+            if joins:
+                objects.pass_by(statement)
+            for held in objects.joined:
+                removed.lose(objects.names(held), Removal(JOIN, statement.lineno))
 
 
 def _used(script: Script, statement: ast.stmt, removed: Removed) -> Iterator[Finding]:
     for node in (statement, *surely_run(statement)):
         for name in _names_used(script, node):
             removal = removed.gone.get(name.id)
-            if removal is None or (_is_kept(node) and removal.path.startswith(_BMESH)):
+            if removal is None or (_is_kept(node) and not removal.path.startswith(T)):
                 continue
             if not is_tried(script, name):
                 del removed.gone[name.id]  # once is enough

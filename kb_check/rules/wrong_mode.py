@@ -6,6 +6,8 @@ bpy.ops.mesh.primitive_cube_add()
 bpy.ops.mesh.subdivide()  # reported: bpy.ops.object.mode_set(mode="EDIT") comes before
 bpy.ops.object.mode_set(mode="EDIT")
 bpy.ops.object.shade_smooth()  # reported: still in Edit Mode
+bpy.ops.object.mode_set(mode="OBJECT")
+bmesh.from_edit_mesh(mesh)  # reported: the mesh must be in Edit Mode
 ```
 
 `mode_set` and `editmode_toggle` move the view layer's active object, whichever one `temp_override` gives: that is a

@@ -15,9 +15,13 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.resolved import callee_path
 from kb_check.calls.sites import calls_by_node
 from kb_check.modes.edit_bones import bound_in, names_in, names_of_others
+from kb_check.modes.state import EDIT_TOGGLE, MODE_SET, literal_argument
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from kb_build.symbols.records import Symbol
+    from kb_check.calls.sites import CallSite
     from kb_check.script import Script
 
 _ELEMENTS = frozenset({f"bmesh.types.BM{kind}Seq.remove" for kind in ("Vert", "Edge", "Face")})
@@ -29,8 +33,10 @@ OUTSIDE_MAIN = {
     f"{T}Object.to_curve": f"{T}Object.to_curve_clear",
 }
 _CLEARING = frozenset(OUTSIDE_MAIN.values())
-_NAMES = ("remove", "free", "clear")
+_NAMES = ("remove", "free", "clear", "from_edit_mesh")
 _TAKING = frozenset({"new", "get", "add"})
+# What belongs to Edit Mode, and goes when that is left.
+_OF_EDIT_MODE, _EDIT_MODE = "bmesh.from_edit_mesh", "Edit Mode"
 
 
 class Removal(NamedTuple):
@@ -64,6 +70,8 @@ class Removed:
         match statement:
             case ast.Expr(value=ast.Call() as call):
                 self._remove(call)
+            case ast.Assign(targets=[ast.Attribute(attr="active")]):
+                self._forget(_EDIT_MODE)  # another object may leave it
             case ast.Assign(targets=[ast.Name(id=name)], value=value) if place := self._place(value):
                 self._hold(name, place, value)
             case _:
@@ -75,7 +83,9 @@ class Removed:
             return
         symbol, owner = site.callee.symbol, call.func.value
         removal = Removal(symbol.path, call.lineno)
-        if symbol.path in _FREEING:
+        if _leaves_edit_mode(site):
+            self._lose_held(_EDIT_MODE, removal)
+        elif symbol.path in _FREEING:
             self._lose(owner, removal)
         elif symbol.path in _CLEARING:
             maker = next(maker for maker, clear in OUTSIDE_MAIN.items() if clear == symbol.path)
@@ -86,14 +96,17 @@ class Removed:
             given = next((node for parameter, node in site.arguments() if parameter.required), None)
             self._lose(given, removal)
 
+    def lose(self, names: Iterable[str], removal: Removal) -> None:
+        """Takes down that what names hold was removed."""
+        for name in names:
+            self.gone[name] = removal
+
     def _lose(self, thing: ast.expr | None, removal: Removal) -> None:
         if isinstance(thing, ast.Name) and thing.id not in names_of_others(self.script):
             self.gone[thing.id] = removal
 
     def _lose_held(self, place: str, removal: Removal) -> None:
-        for name in self._forget(place):
-            if name not in names_of_others(self.script):
-                self.gone[name] = removal
+        self.lose(set(self._forget(place)) - names_of_others(self.script), removal)
 
     def _hold(self, name: str, place: str, value: ast.expr) -> None:
         self._held[name] = place
@@ -113,6 +126,8 @@ class Removed:
                 callee_path(self.script, value) in OUTSIDE_MAIN
             ):
                 return ast.unparse(function)
+            case ast.Call() if callee_path(self.script, value) == _OF_EDIT_MODE:
+                return _EDIT_MODE
             case ast.Call(func=ast.Attribute(value=owner, attr=name)) if name in _TAKING:
                 return ast.unparse(owner) if callee_path(self.script, value) else ""
             case ast.Subscript(value=owner, slice=ast.Constant()) if self._owns_items(owner):
@@ -127,6 +142,13 @@ class Removed:
         if not isinstance(element, Instance) or not element.cls.startswith(T):
             return False
         return not self.script.api.descends(element.cls, ID)
+
+
+def _leaves_edit_mode(site: CallSite) -> bool:
+    """Whether a call takes the active object out of Edit Mode, if it is in that."""
+    path = site.callee.symbol.path
+    mode = literal_argument(site, "mode") if path in MODE_SET and "toggle" not in site.given else "EDIT"
+    return path == EDIT_TOGGLE or mode not in ("EDIT", None)
 
 
 def may_remove(script: Script) -> bool:

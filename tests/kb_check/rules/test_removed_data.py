@@ -45,6 +45,28 @@ _WRONG = {
     "comprehension": "kept = [i for i in depsgraph.object_instances]\nkept[0].matrix_world",
     "loop over a list": "for i in sorted(depsgraph.object_instances, key=str):\n    i.object",
 }
+_TWO = """\
+bpy.ops.mesh.primitive_cube_add()
+first = bpy.context.object
+bpy.ops.mesh.primitive_uv_sphere_add()
+second = bpy.context.object
+"""
+_BOTH = "first.select_set(True)\nbpy.context.view_layer.objects.active = first\n"
+_JOIN = "bpy.ops.object.join()\n"
+_EDIT = f"{_TWO}bpy.ops.object.mode_set(mode='EDIT')\nbm = bmesh.from_edit_mesh(second.data)\n"
+_WRONG |= {
+    "joined": f"{_TWO}{_BOTH}{_JOIN}second.name",
+    "joined, selected anew": f"{_TWO}bpy.ops.object.select_all(action='DESELECT')\nsecond.select_set(True)\n{_BOTH}"
+    f"second.location.x = 1\n{_JOIN}second.name",
+    "joined, made by data": f"{_TWO}second = bpy.data.objects.new('m', first.data)\n"
+    f"bpy.context.collection.objects.link(second)\nsecond.select_set(True)\n{_BOTH}{_JOIN}second.name",
+    "joined, a copy": f"{_TWO}second = first.copy()\nbpy.context.collection.objects.link(second)\n"
+    f"second.select_set(True)\n{_BOTH}{_JOIN}second.name",
+    "edit mode left": f"{_EDIT}bpy.ops.object.mode_set(mode='OBJECT')\nbm.verts",
+    "edit mode toggled": f"{_EDIT}bpy.ops.object.editmode_toggle()\nprint(bm.faces)",
+    "edit mode entered again": f"{_EDIT}bpy.ops.object.mode_set(mode='OBJECT')\n"
+    "bpy.ops.object.mode_set(mode='EDIT')\nbm.verts",
+}
 # What is read there is chance: the memory is free, and may hold what it held.
 _OF_FREE_MEMORY = [
     "ob.modifiers.clear()\nmodifier.levels",
@@ -75,6 +97,28 @@ _SOUND = {
     "counted": "kept = list(depsgraph.object_instances)\nprint(len(kept))",
     "values kept": "kept = [i.object.original for i in depsgraph.object_instances]\nkept[0].name",
     "numbered": "for n, i in enumerate(depsgraph.object_instances):\n    i.object",
+}
+_SOUND |= {
+    "the active one stays": f"{_TWO}{_BOTH}{_JOIN}first.name",
+    "not selected": f"{_TWO}second.select_set(False)\n{_BOTH}{_JOIN}second.name",
+    "all deselected": f"{_TWO}bpy.ops.object.select_all(action='DESELECT')\n{_BOTH}{_JOIN}second.name",
+    "deselected in a loop": f"{_TWO}for each in (second,):\n    each.select_set(False)\n{_BOTH}{_JOIN}second.name",
+    "deselected by a function": f"def leave():\n    second.select_set(False)\n{_TWO}leave()\n{_BOTH}{_JOIN}second.name",
+    "the active one is not selected": f"{_TWO}bpy.context.view_layer.objects.active = first\n{_JOIN}second.name",
+    "of another type": f"{_TWO}bpy.ops.curve.primitive_bezier_circle_add()\nsecond = bpy.context.object\n"
+    f"{_BOTH}{_JOIN}second.name",
+    "the same one": f"{_TWO}second = first\nfirst.select_set(True)\n{_BOTH}{_JOIN}second.name",
+    "the same one by its name": f"{_TWO}first.name = 'a'\nsecond = bpy.data.objects['a']\n"
+    f"second.select_set(True)\n{_BOTH}{_JOIN}second.name",
+    "data stay": f"{_TWO}data = second.data\n{_BOTH}{_JOIN}data.name",
+    "edit mode stays": f"{_EDIT}bpy.ops.object.mode_set(mode='EDIT')\nbm.verts",
+    "taken anew": f"{_EDIT}bpy.ops.object.mode_set(mode='OBJECT')\nbpy.ops.object.mode_set(mode='EDIT')\n"
+    "bm = bmesh.from_edit_mesh(second.data)\nbm.verts",
+    "asked whether it is valid": f"{_EDIT}bpy.ops.object.mode_set(mode='OBJECT')\nprint(bm.is_valid)",
+    "another one leaves it": f"{_EDIT}bpy.context.view_layer.objects.active = ob\n"
+    "bpy.ops.object.mode_set(mode='OBJECT')\nbm.verts",
+    "left for a moment of its own": "new = bmesh.new()\n"
+    f"{_EDIT}bpy.ops.object.mode_set(mode='OBJECT')\nnew.verts",
 }
 
 
