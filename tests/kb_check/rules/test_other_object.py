@@ -1,0 +1,80 @@
+"""Operators that look for a modifier on another object are found: each is run in Blender, and does nothing or works."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from statements_in_blender import run_statements
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import Check
+
+_START = """\
+import bpy
+bpy.ops.wm.read_factory_settings(use_empty=True)
+bpy.ops.mesh.primitive_cube_add()
+cube = bpy.context.object
+bpy.ops.mesh.primitive_uv_sphere_add()
+ball = bpy.context.object
+"""
+_NEW = "hole = cube.modifiers.new('Hole', 'TRIANGULATE')\n"
+_ACTIVATE = "bpy.context.view_layer.objects.active = "
+_APPLY = "bpy.ops.object.modifier_apply(modifier='Hole')\n"
+_BY_NAME = "bpy.ops.object.modifier_apply(modifier=hole.name)\n"
+_WRONG = {
+    "by its name": f"{_NEW}{_APPLY}",
+    "by a name that holds it": f"{_NEW}{_BY_NAME}",
+    "made active before": f"{_ACTIVATE}cube\n{_NEW}hole.show_viewport = True\n{_ACTIVATE}ball\n{_APPLY}",
+    "a new object": f"{_NEW}new = bpy.data.objects.new('new', cube.data)\n"
+    f"bpy.context.collection.objects.link(new)\n{_ACTIVATE}new\n{_APPLY}",
+    "removed": f"{_NEW}bpy.ops.object.modifier_remove(modifier='Hole')\n",
+    "in a function": f"def cut(cube):\n    bpy.ops.mesh.primitive_cone_add()\n    cone = bpy.context.object\n"
+    f"    other = bpy.data.objects['Cube']\n    hole = other.modifiers.new('Hole', 'TRIANGULATE')\n    {_BY_NAME}"
+    "cut(cube)\n",
+}
+_SOUND = {
+    "active": f"{_NEW}{_ACTIVATE}cube\n{_APPLY}",
+    "the last one": f"hole = ball.modifiers.new('Hole', 'TRIANGULATE')\n{_BY_NAME}",
+    "of both": f"{_NEW}ball.modifiers.new('Hole', 'TRIANGULATE')\n{_APPLY}",
+    "added by an operator": f"{_NEW}bpy.ops.object.modifier_add(type='TRIANGULATE')\n"
+    "ball.modifiers[0].name = 'Hole'\n"
+    f"{_APPLY}",
+    "of a copy": f"{_NEW}twin = cube.copy()\nbpy.context.collection.objects.link(twin)\n{_ACTIVATE}twin\n"
+    f"twin.data = twin.data.copy()\n{_APPLY}",
+    "given in a loop": f"{_NEW}for each in (cube, ball):\n    each.modifiers.new('Hole', 'TRIANGULATE')\n{_APPLY}",
+    "given by a function": "def give():\n    ball.modifiers.new('Hole', 'TRIANGULATE')\n"
+    f"{_NEW}give()\n{_APPLY}",
+    "made active by a function": f"def activate():\n    {_ACTIVATE}cube\n{_NEW}activate()\n{_APPLY}",
+    "overridden": f"{_NEW}with bpy.context.temp_override(object=cube, active_object=cube):\n    {_APPLY}",
+    "in a loop over objects": "for each in (cube, ball):\n"
+    f"    hole = each.modifiers.new('Hole', 'TRIANGULATE')\n    {_ACTIVATE}each\n    {_BY_NAME}",
+    "bound again": f"{_NEW}cube = ball\nhole = cube.modifiers.new('Hole', 'TRIANGULATE')\n{_BY_NAME}",
+}
+
+
+@pytest.mark.parametrize("name", _WRONG)
+def test_what_works_on_another_object_is_found(check: Check, name: str) -> None:
+    assert [finding.severity for finding in check("other-object", f"{_START}{_WRONG[name]}")] == ["warning"]
+
+
+@pytest.mark.parametrize("name", _SOUND)
+def test_what_works_has_no_finding(check: Check, name: str) -> None:
+    assert check("other-object", f"{_START}{_SOUND[name]}") == []
+
+
+def test_blender_does_nothing_or_works(tmp_path: Path) -> None:
+    """The modifier that is meant is there afterwards, or it is not."""
+    left = [
+        f"{_START}{code}assert sum(len(one.modifiers) for one in bpy.data.objects) == 1"
+        for code in _WRONG.values()
+    ]
+    operator = "bpy.ops.object.modifier_apply"
+    works = [
+        f"{_START}{code.replace(operator, 'done = ' + operator)}assert done == {{'FINISHED'}}"
+        for code in _SOUND.values()
+    ]
+    answers = [error for error, *_ in run_statements(tmp_path, [*left, *works])]
+    assert [(name, error) for name, error in zip([*_WRONG, *_SOUND], answers, strict=True) if error] == []
