@@ -20,7 +20,8 @@ with bpy.context.temp_override(active_object=ob):
 
 So is a mode that the active object's type does not have: `mode_set(mode="POSE")` of a cube. It is an error where the
 mode is certain: something before, on every way, enters it or runs in it alone. Where only nothing in the script enters
-a mode that an operator needs, it is a note: Blender may be in that mode when the script starts.
+a mode that an operator needs, it is a note: Blender may be in that mode when the script starts. Of meshes that the
+script makes itself, that is certain.
 
 Not reported otherwise: what stands inside `temp_override`, or in a `try` that catches the error; and what follows calls
 that may change the mode out of sight. Blender is taken to have its own settings: new objects do not enter Edit Mode.
@@ -50,6 +51,7 @@ from kb_check.modes.state import (
 )
 from kb_check.rule import Rule
 from kb_check.running.background import is_called_by_others, lines_of_others
+from kb_check.scene.made_here import is_new, is_primitive_mesh
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -85,13 +87,22 @@ def _check(script: Script) -> Iterator[Finding]:
             yield Finding(RULE.id, "error", script.span(call.node), f"`{path}` {said}.", path)
         elif never and not state.mode and call.node.lineno not in quiet:
             modes = modes_wanted(call.callee.symbol)
+            is_function = call.callee.symbol.kind != "operator"
+            if is_function and not _is_of_new_mesh(script, call):
+                continue  # a mesh that is in Edit Mode when the script starts
             if modes and not modes.is_others and not modes.takes("OBJECT"):
                 yield Finding(
-                    RULE.id, "note", script.span(call.node),
+                    RULE.id, "error" if is_function else "note", script.span(call.node),
                     f"`{path}` runs only in {modes_text(modes.names)}, which this script never enters: "
                     f"{entering(modes)}.",
                     path,
                 )  # fmt: skip
+
+
+def _is_of_new_mesh(script: Script, call: CallSite) -> bool:
+    """Whether a function is given a mesh that the script has surely made."""
+    given = next((node for _, node in call.arguments()), None)
+    return given is not None and (is_new(script, given) or is_primitive_mesh(script, given))
 
 
 def _held_modes(script: Script) -> Iterator[Finding]:

@@ -159,3 +159,24 @@ def test_functions_of_edited_meshes_are_held_against_the_mode(
     ((error, *_),) = run_statements(tmp_path, [script])
     assert bool(error) is is_refused
     assert bool(check("wrong-mode", script)) is is_refused
+
+
+@pytest.mark.parametrize(
+    ("code", "is_found"),
+    [
+        ("mesh = bpy.data.meshes.new('a')\nbmesh.from_edit_mesh(mesh)", True),
+        (
+            "mesh = bpy.data.meshes.new('a')\nob = bpy.data.objects.new('a', mesh)\nbmesh.from_edit_mesh(ob.data)",
+            True,
+        ),
+        ("bpy.ops.mesh.primitive_cube_add()\nbmesh.from_edit_mesh(bpy.context.object.data)", True),
+        ("bmesh.from_edit_mesh(bpy.context.object.data)", False),
+        ("bmesh.from_edit_mesh(bpy.data.meshes['Cube'])", False),
+        ("def change(mesh):\n    bmesh.from_edit_mesh(mesh)\nchange(bpy.context.object.data)", False),
+    ],
+)
+def test_only_new_meshes_are_surely_in_object_mode_when_a_script_starts(
+    check: Check, code: str, *, is_found: bool
+) -> None:
+    found = check("wrong-mode", f"import bpy, bmesh\n{code}\n")
+    assert [finding.severity for finding in found] == ["error"] * is_found
