@@ -1,14 +1,20 @@
-"""A new object that is selected, hidden or made active before it is in a collection.
+"""An object that is selected, hidden or made active while it is in no collection of the scene.
 
 ```python
 cube = bpy.data.objects.new("Cube", mesh)
 cube.select_set(True)  # reported: bpy.context.collection.objects.link(cube) comes before
 bpy.context.view_layer.objects.active = cube  # so it does for this
+props = bpy.data.collections.new("Props")
+props.objects.link(cube)
+cube.select_set(True)  # reported: bpy.context.scene.collection.children.link(props) comes before
+for collection in ball.users_collection:
+    collection.objects.unlink(ball)
+ball.select_set(True)  # reported: it is in no collection any more
 ```
 
 Blender refuses each, since no view layer has the object; ``hide_set(True)`` too. Not reported: objects that the
-statements between may have linked: those that name the object otherwise than to read from it, or that link what they
-find or call what is not known; and what stands in a ``try``.
+statements between may have linked: those that name the object, or its collection, otherwise than to read from it, or
+that link what they find or call what is not known; and what stands in a ``try``.
 """
 
 from __future__ import annotations
@@ -37,23 +43,43 @@ if TYPE_CHECKING:
 
     from kb_check.script import Script
 
-_COPY = f"{T}ID.copy"
+_COPY, _UNLINK = f"{T}ID.copy", f"{T}CollectionObjects.unlink"
+_COLLECTIONS_NEW = f"{T}BlendDataCollections.new"
+_MAKING = frozenset({OBJECTS_NEW, _COLLECTIONS_NEW, _COPY})
 # What needs the object in the view layer when it is given True.
 _REFUSED = frozenset({f"{OBJECT}.select_set", f"{OBJECT}.hide_set"})
+
+
+# Name of an object → the names of the collections that have it, which no scene has.
+_Unlinked = dict[str, set[str]]
 
 
 def _check(script: Script) -> Iterator[Finding]:
     if computes_names(script):
         return
     for body in bodies(script):
-        unlinked: set[str] = set()
+        unlinked: _Unlinked = {}
+        collections: set[str] = set()
         for statement in body:
             if unlinked:
                 yield from _refused(script, statement, unlinked)
-                unlinked -= _taken(script, statement, unlinked)
-                unlinked -= set(bound_in(statement))
-            if name := _makes(script, statement):
-                unlinked.add(name)
+            if (link := _link(statement)) and link[0] in collections and link[1] in unlinked:
+                unlinked[link[1]].add(link[0])
+                continue
+            unlinking = _unlinks(script, statement)
+            if unlinked or collections:
+                known = set[str]() if unlinking else {*unlinked, *collections}
+                taken = _taken(script, statement, known) | set(bound_in(statement))
+                collections -= taken
+                unlinked = {
+                    name: having
+                    for name, having in unlinked.items()
+                    if name not in taken and having.isdisjoint(taken)
+                }
+            if name := _makes(script, statement) or unlinking:
+                unlinked[name] = set()
+            elif name := _makes_collection(script, statement):
+                collections.add(name)
 
 
 def _makes(script: Script, statement: ast.stmt) -> str:
@@ -67,7 +93,57 @@ def _makes(script: Script, statement: ast.stmt) -> str:
             return ""
 
 
-def _refused(script: Script, statement: ast.stmt, unlinked: set[str]) -> Iterator[Finding]:
+def _makes_collection(script: Script, statement: ast.stmt) -> str:
+    """The name of the new collection that a statement makes; empty for none."""
+    match statement:
+        case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call() as call):
+            is_new = callee_path(script, call) == _COLLECTIONS_NEW
+            return name if is_new and name not in names_of_others(script) else ""
+        case _:
+            return ""
+
+
+def _unlinks(script: Script, statement: ast.stmt) -> str:
+    """The name of the object that a loop takes out of all its collections; empty for none."""
+    match statement:
+        case ast.For(
+            target=ast.Name(id=collection),
+            iter=ast.Attribute(value=ast.Name(id=name), attr="users_collection")
+            | ast.Call(
+                func=ast.Name(id="list" | "tuple"),
+                args=[ast.Attribute(value=ast.Name(id=name), attr="users_collection")],
+            ),
+            body=[
+                ast.Expr(
+                    value=ast.Call(
+                        func=ast.Attribute(value=ast.Attribute(value=ast.Name(id=unlinked))),
+                        args=[ast.Name(id=given)],
+                    ) as call
+                )
+            ],
+        ) if (unlinked, given) == (collection, name) and callee_path(script, call) == _UNLINK:
+            return name if name not in names_of_others(script) else ""
+        case _:
+            return ""
+
+
+def _link(statement: ast.stmt) -> tuple[str, str] | None:
+    """The collection and the object, by their names, that a statement links."""
+    match statement:
+        case ast.Expr(
+            value=ast.Call(
+                func=ast.Attribute(
+                    value=ast.Attribute(value=ast.Name(id=collection), attr="objects"), attr="link"
+                ),
+                args=[ast.Name(id=name)],
+            )
+        ):
+            return collection, name
+        case _:
+            return None
+
+
+def _refused(script: Script, statement: ast.stmt, unlinked: _Unlinked) -> Iterator[Finding]:
     for node in (statement, *surely_run(statement)):
         match node:
             case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr=what)):
@@ -81,11 +157,16 @@ def _refused(script: Script, statement: ast.stmt, unlinked: set[str]) -> Iterato
             case _:
                 continue
         if is_refused and name in unlinked and not is_tried(script, place):
-            unlinked.discard(name)  # once is enough
+            having = sorted(unlinked.pop(name))  # once is enough
+            where = f"only in `{having[0]}`, which no scene has" if having else "in no collection"
+            linking = (
+                f"`bpy.context.scene.collection.children.link({having[0]})`"
+                if having
+                else f"`bpy.context.collection.objects.link({name})`"
+            )
             yield Finding(
                 RULE.id, "error", script.span(place),
-                f"`{name}` is in no collection yet, so no view layer has it, and Blender refuses `{what}`: "
-                f"`bpy.context.collection.objects.link({name})` comes before.",
+                f"`{name}` is {where}, so no view layer has it, and Blender refuses `{what}`: {linking} comes before.",
                 path,
             )  # fmt: skip
 
@@ -116,14 +197,18 @@ def _is_pointer(script: Script, target: ast.Attribute) -> bool:
 
 
 def _links_unknown(script: Script, call: ast.Call) -> bool:
-    """Whether a call links something that may be any object: not one that a name holds which calls alone have given."""
+    """Whether a call links something that may be any object: not one that a name holds which is made for it alone."""
     match call:
         case ast.Call(func=ast.Attribute(attr="link"), args=[ast.Name(id=name)], keywords=[]):
-            return not all(isinstance(value, ast.Call) for value in bindings(script).get(name, [None]))
+            return not all(_is_made(script, value) for value in bindings(script).get(name, [None]))
         case ast.Call(func=ast.Attribute(attr="link")):
             return True
         case _:
             return False
+
+
+def _is_made(script: Script, value: ast.expr | None) -> bool:
+    return isinstance(value, ast.Call) and callee_path(script, value) in _MAKING
 
 
 RULE = Rule("unlinked-object", "error", "An object in no collection is selected or made active", _check)

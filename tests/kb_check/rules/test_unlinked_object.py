@@ -22,6 +22,10 @@ ob = bpy.data.objects.new("ob", None)
 """
 _SELECT = "ob.select_set(True)"
 _LINK = "objects.link(ob)\n"
+_PROPS = 'props = bpy.data.collections.new("props")\n'
+_IN_PROPS = f"{_PROPS}props.objects.link(ob)\n"
+_LINK_PROPS = "bpy.context.scene.collection.children.link(props)\n"
+_UNLINK = "for one in other.users_collection:\n    one.objects.unlink(other)\n"
 _WRONG = {
     "selected": _SELECT,
     "selected by keyword": "ob.select_set(state=True)",
@@ -35,6 +39,17 @@ _WRONG = {
     "copy": f"{_LINK}twin = ob.copy()\ntwin.select_set(True)",
     "in a function": "def f():\n    ob = bpy.data.objects.new('ob', None)\n    ob.select_set(True)\nf()",
 }
+_WRONG |= {
+    "in a collection of no scene": f"{_IN_PROPS}{_SELECT}",
+    "made before the object": f"{_PROPS}ob = bpy.data.objects.new('new', None)\nprops.objects.link(ob)\n{_SELECT}",
+    "active, in a collection of no scene": f"{_IN_PROPS}layer.objects.active = ob",
+    "the collection is linked later": f"{_IN_PROPS}{_SELECT}\n{_LINK_PROPS}",
+    "unlinked": f"{_UNLINK}other.select_set(True)",
+    "unlinked of a list": f"{_UNLINK.replace('other.users_collection', 'list(other.users_collection)')}"
+    "layer.objects.active = other",
+    "unlinked and linked to a collection of no scene": f"{_PROPS}{_UNLINK}props.objects.link(other)\n"
+    "other.select_set(True)",
+}
 _SOUND = {
     "linked": f"{_LINK}{_SELECT}\nlayer.objects.active = ob",
     "not selected": "ob.select_set(False)\nob.hide_set(False)",
@@ -47,6 +62,21 @@ _SOUND = {
     "linked in a condition": f"if ob.name:\n    {_LINK}{_SELECT}",
     "caught": f"try:\n    {_SELECT}\nexcept RuntimeError:\n    pass",
     "another name": f"{_LINK}ob, new = other, bpy.data.objects.new('new', None)\n{_SELECT}",
+    "in a collection of the scene": f"{_IN_PROPS}{_LINK_PROPS}{_SELECT}",
+    "in one that the scene had": f"{_PROPS}{_LINK_PROPS}props.objects.link(ob)\n{_SELECT}",
+    "in a collection within another": f"{_IN_PROPS}up = bpy.data.collections.new('up')\nup.children.link(props)\n"
+    f"bpy.context.scene.collection.children.link(up)\n{_SELECT}",
+    "in two": f"{_IN_PROPS}{_LINK}{_SELECT}",
+    "its collection is linked by a helper": f"def show(which):\n    {_LINK_PROPS.replace('props', 'which')}"
+    f"{_IN_PROPS}show(props)\n{_SELECT}",
+    "its collection is linked by its name": f"{_IN_PROPS}"
+    f"bpy.context.scene.collection.children.link(bpy.data.collections['props'])\n{_SELECT}",
+    "linked and unlinked": f"{_UNLINK}objects.link(other)\nother.select_set(True)",
+    "unlinked and linked out of sight": f"def find():\n    return bpy.data.objects['other']\nthis = find()\n{_UNLINK}"
+    "objects.link(this)\nother.select_set(True)",
+    "unlinked of some": "for one in other.users_collection:\n    if one.name == 'x':\n"
+    "        one.objects.unlink(other)\nother.select_set(True)",
+    "moved": f"{_PROPS}{_LINK_PROPS}{_UNLINK}props.objects.link(other)\nother.select_set(True)",
     "camera of the scene": "bpy.context.scene.camera = ob",
 }
 
