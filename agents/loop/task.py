@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from agents.protocol.findings import Finding
     from simworlds.llm.messages import Picture
 
-_MOST_NAMES, _MOST_OLD = 200, 5_000  # of a readout's arguments
+_MOST_NAMES, _MOST_OLD = 200, 5_000  # of a tool's arguments
 _READOUT_TOKENS = 2_000  # of a readout that is given with every request of an edit
 
 
@@ -61,6 +61,11 @@ class RunTask:
     def old_objects(self) -> dict[str, Any]:
         """The argument of a tool that tells what an edit added from what was there."""
         return {"old": list(self.old)} if len(self.old) <= _MOST_OLD else {}
+
+    @property
+    def trial(self) -> dict[str, Any]:
+        """The argument of ``blender_trial`` that says what it tells of before others."""
+        return {"first": list(self.actors)[:_MOST_NAMES]}
 
     def verification(self, stage: Stage) -> dict[str, Any]:
         """What ``blender_verify`` is asked at the end of a stage."""

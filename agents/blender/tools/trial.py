@@ -6,6 +6,7 @@ import secrets
 from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field
+from pydantic.json_schema import SkipJsonSchema
 
 from agents.blender.sheets.contact_sheet import Panel, grid, sheet, to_png
 from agents.blender.sheets.worker_pictures import taken_picture
@@ -18,10 +19,13 @@ if TYPE_CHECKING:
 
     from agents.blender.supervisor import Supervisor
 
+_Count = Annotated[int, Field(ge=0, le=10**9)]
 _WIDTH = 240  # of a picture, in pixels
 _COLUMNS = 3
 _SPARE_SECONDS = 120.0  # for the frame that runs when the time is up, and for the pictures
-_MOST = 100
+_MOST, _MOST_FIRST = 100, 200
+_SAME_VOLUME = 0.01  # in parts, by which it may change and still be told once
+_SHALLOWEST = 1e-4  # metres
 
 
 class TrialArguments(Arguments):
@@ -31,8 +35,10 @@ class TrialArguments(Arguments):
         default=None,
         min_length=1,
         max_length=12,
-        description="Default: all that are simulated.",
+        description="Default: all; of more than 12, those that move most.",
     )
+    # Not for models, which name the objects: of many, these are told of before others, if they are simulated.
+    first: SkipJsonSchema[list[str]] = Field(default_factory=list[str], max_length=_MOST_FIRST)
     frames: int = Field(default=24, ge=2, le=1000, description="To step.")
     seconds: float = Field(default=60.0, ge=1, le=1800, description="Ends after this time.")
     pictures: bool = Field(default=True, description="Small ones.")
@@ -40,29 +46,36 @@ class TrialArguments(Arguments):
 
 DESCRIPTION = """\
 Try a simulation before you bake it: steps some frames; tells heights, speed, volume and depth in what it touches of \
-each object, and what the bake will take; shows small pictures. Stops where it is not finite, with the likely cause. \
+each object, of particles how many, where, which way, and what they fall through; and what the bake will take; shows \
+small pictures. Stops where it is not finite, with the likely cause. \
 What was simulated is kept for the bake. Baked simulations are played: free them first."""
 
 
 class _Sample(Claim):
-    """An object at a frame: metres, m/s, m³. ``depth``: how deep it is in the mesh ``inside``."""
+    """An object at a frame: metres, m/s, m³. ``depth``: how deep it is in the mesh ``inside``; ``alive``: particles."""
 
     frame: Frame
+    alive: _Count | None
     lowest: float | None
     highest: float | None
     middle: tuple[float, float, float] | None
     speed: float | None
-    volume: float | None
-    depth: float | None
-    inside: Name | None
+    velocity: tuple[float, float, float] | None
+    volume: float | None = None
+    depth: float | None = None
+    inside: Name | None = None
 
 
 class _ActorTrial(Claim):
+    """An object: its ``lowest`` point and ``peak_speed``, each with its frame; ``heights``: at frames the lowest and
+    highest point, and the speed. ``most_alive``: the most particles at one time; None if it has none."""
+
     name: Name
-    lowest: float | None
-    peak_speed: float | None
+    lowest: tuple[float, Frame] | None
+    peak_speed: tuple[float, Frame] | None
+    most_alive: _Count | None
     samples: list[_Sample] = Field(max_length=_MOST)
-    heights: list[tuple[Frame, float, float]] = Field(default=[], max_length=_MOST)
+    heights: list[tuple[Frame, float, float, float | None]] = Field(max_length=_MOST)
 
 
 class _Ranked(Claim):
@@ -73,7 +86,7 @@ class _Ranked(Claim):
 
 
 class _Others(Claim):
-    """Bodies that are not measured in full: how far they have ``moved`` (m), and what is ``moving`` at last (m/s)."""
+    """What is not told in full: how far it has ``moved`` (m), and what is ``moving`` at last (m/s)."""
 
     count: int
     moved: _Ranked
@@ -92,6 +105,7 @@ class _TrialReply(Claim):
     caches: list[Name] = Field(max_length=10_000)
     actors: list[_ActorTrial] = Field(max_length=_MOST)
     others: _Others | None
+    fallen: list[Text] = Field(max_length=_MOST)
     pictures: dict[
         Annotated[str, Field(pattern=r"^-?\d{1,7}$")], Annotated[str, Field(pattern=r"^-?\d+\.png$")]
     ]
@@ -107,6 +121,7 @@ def run(context: ToolContext, arguments: TrialArguments, call: Call) -> Result:
             "trial",
             {
                 "objects": arguments.objects,
+                "first": arguments.first,
                 "frames": arguments.frames,
                 "seconds": arguments.seconds,
                 "folder": blender.folder.workspace.for_blender(folder),
@@ -145,17 +160,39 @@ def _lines(trial: _TrialReply) -> Iterator[str]:
         yield _pace(trial)
     if trial.stopped and trial.last >= trial.first:
         yield f"**Ended after frame {trial.last}**: {trial.stopped.rstrip('.')}."
+    yield from (f"**{_sentence(fault)}**" for fault in trial.fallen)
     for actor in trial.actors:
-        parts = [f"lowest point {actor.lowest:.3f} m"] if actor.lowest is not None else []
-        parts += [f"peak speed {actor.peak_speed:.2f} m/s"] if actor.peak_speed is not None else []
-        yield f"- {actor.name}: {', '.join(parts) or 'not there at any of these frames'}"
-        yield from (f"  - frame {sample.frame}: {_sample(sample)}" for sample in actor.samples)
-        if len(actor.heights) > len(actor.samples):
-            course = "; ".join(f"{frame}: {low:.3f} {high:.3f}" for frame, low, high in actor.heights)
-            yield f"  - frame: lowest and highest point, m: {course}"
+        yield from _lines_of(actor)
     if trial.others is not None:
         yield _line_of_others(trial.others)
+        yield "Told in full is what moves most. Name others (objects) to see those."
     yield from trial.notes
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def _lines_of(actor: _ActorTrial) -> Iterator[str]:
+    parts = [f"at most {actor.most_alive} particles alive"] if actor.most_alive is not None else []
+    parts += ["lowest point {:.3f} m at frame {}".format(*actor.lowest)] if actor.lowest else []
+    parts += ["peak speed {:.2f} m/s at frame {}".format(*actor.peak_speed)] if actor.peak_speed else []
+    volumes = [sample.volume for sample in actor.samples if sample.volume is not None]
+    keeps_volume = bool(volumes) and max(volumes) - min(volumes) <= _SAME_VOLUME * max(volumes)
+    parts += [f"{volumes[0]:.4g} m³"] if keeps_volume else []
+    yield f"- {actor.name}: {', '.join(parts) if parts else 'not there at any of these frames'}"
+    if actor.most_alive is not None:
+        yield from (f"  - frame {sample.frame}: {_swarm(sample)}" for sample in actor.samples)
+        return
+    if actor.heights:
+        course = "; ".join(
+            f"{frame}: {low:.3f} {high:.3f}" + (f" {speed:.2f}" if speed is not None else "")
+            for frame, low, high, speed in actor.heights
+        )
+        yield f"  - frame: lowest, highest point (m), speed (m/s): {course}"
+    for sample in actor.samples:
+        if found := ", ".join(_solid(sample, tells_volume=not keeps_volume)):
+            yield f"  - frame {sample.frame}: {found}"
 
 
 def _line_of_others(others: _Others) -> str:
@@ -164,7 +201,7 @@ def _line_of_others(others: _Others) -> str:
         f"{moved.count} have moved{_most(moved, 'm')}",
         f"{moving.count} still move{_most(moving, 'm/s')}",
     ]
-    return f"- Other bodies: {others.count:,}, of which {'; at the last frame '.join(parts)}"
+    return f"- Others: {others.count:,}, of which {'; at the last frame '.join(parts)}"
 
 
 def _most(ranked: _Ranked, unit: str) -> str:
@@ -181,14 +218,25 @@ def _pace(trial: _TrialReply) -> str:
     return f"{mean:.2f} s a frame, {late:.2f} s at the end; the whole bake of {frames} frames: about {seconds:.0f} s."
 
 
-def _sample(sample: _Sample) -> str:
-    if sample.lowest is None or sample.highest is None:
-        return "not there"
-    parts = [f"{sample.lowest:.3f} to {sample.highest:.3f} m high"]
-    parts += [f"{sample.speed:.2f} m/s"] if sample.speed is not None else []
-    parts += [f"{sample.volume:.4g} m³"] if sample.volume is not None else []
-    parts += [f"{sample.depth * 1000:.1f} mm deep in {sample.inside!r}"] if sample.depth is not None else []
+def _swarm(sample: _Sample) -> str:
+    if sample.lowest is None or sample.highest is None or sample.middle is None:
+        return "none alive"
+    parts = [f"{sample.alive} alive, mean place {_vector(sample.middle)}"]
+    parts.append(f"{sample.lowest:.3f} to {sample.highest:.3f} m high")
+    parts += [f"mean speed {sample.speed:.2f} m/s"] if sample.speed is not None else []
+    parts += [f"mean velocity {_vector(sample.velocity)} m/s"] if sample.velocity is not None else []
     return ", ".join(parts)
+
+
+def _vector(parts: tuple[float, float, float]) -> str:
+    return "({:.2f}, {:.2f}, {:.2f})".format(*parts)
+
+
+def _solid(sample: _Sample, *, tells_volume: bool) -> Iterator[str]:
+    if tells_volume and sample.volume is not None:
+        yield f"{sample.volume:.4g} m³"
+    if sample.depth is not None and sample.depth >= _SHALLOWEST:
+        yield f"{sample.depth * 1000:.1f} mm deep in {sample.inside!r}"
 
 
 TOOL = BlenderTool(

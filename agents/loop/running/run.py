@@ -17,7 +17,7 @@ from agents.loop.review.acceptance import AcceptanceRecord
 from agents.loop.review.withdrawals import as_soft
 from agents.loop.running.interruptible import Interruptible
 from agents.loop.running.position import START, Position
-from agents.loop.running.run_tools import LOOKS, RENDER, RUNNER, VERIFY
+from agents.loop.running.run_tools import LOOKS, RENDER, RUNNER, TRIAL, VERIFY
 from agents.loop.running.unused_blocks import UnusedBlocks
 from agents.roles import coder, planner, reviewer
 from agents.roles.base import RoleContext
@@ -226,8 +226,7 @@ class RoleTools:
             text = f"{call.name} is not available to your role; you have {', '.join(self._names)}."
             return ToolResult(call.id, (Text(text),), failed=True)
         task = self._run.task if call.name == VERIFY else None
-        known = task.verification(self._stage) if task else None
-        outcome = self._run.tools.use(self._role, self._stage, call.name, call.input, known)
+        outcome = self._run.tools.use(self._role, self._stage, call.name, call.input, self._known(call.name))
         if self._role == coder.NAME and call.name == RENDER and not outcome.failed:
             self._run.keep_stills(outcome)
         if task is not None and "findings" in outcome.data:
@@ -238,3 +237,12 @@ class RoleTools:
             if withdrawn or task.known:
                 return ToolResult(call.id, (Text(text), *(outcome.pictures if findings else ())))
         return ToolResult(call.id, outcome.content, outcome.failed)
+
+    def _known(self, tool: str) -> dict[str, Any] | None:
+        """The arguments of a tool that follow from what the run is held to."""
+        task = self._run.task
+        if task is None:
+            return None
+        if tool == VERIFY:
+            return task.verification(self._stage)
+        return task.trial if tool == TRIAL else None

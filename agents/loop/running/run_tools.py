@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 RUNNER, VERIFIER = "runner", "verifier"  # who calls, besides the roles
 VERIFY = "blender_verify"
 RENDER = "blender_render"
+TRIAL = "blender_trial"
 # What a reviewer sees with, and nothing else; what the verifier says follows from the scene alone, too.
 LOOKS = frozenset(tool.name for tool in BY_NAME.values() if tool.shows_scene)
 _SHOWING = LOOKS | {VERIFY}

@@ -160,6 +160,29 @@ def test_motion_that_is_faked_by_keyframes_is_stopped(falling: Played) -> None:
     assert [taken for stage, taken in falling.taken if stage == "motion"] == ["retry", "advance"]
 
 
+MORE_BODIES = """
+for number in range(13):
+    bpy.ops.mesh.primitive_cube_add(size=0.2, location=(number - 6, 9, 9))
+    bpy.ops.rigidbody.object_add()
+"""
+
+
+def test_a_trial_tells_of_what_the_plan_moves_before_of_what_moves_more(
+    play: Callable[..., Played],
+) -> None:
+    trial = call("blender_trial", frames=16, pictures=False)
+    team = Team(
+        plan=crates.falling(),
+        coder={
+            "modeling": (run(crates.HIGH), DONE),
+            "motion": (run(crates.BODIES + MORE_BODIES), trial, DONE),
+        },
+        decisions={"motion": (ABORT,)},
+    )
+    (tried,) = [row for row in play(team).of("tool.answered") if row["name"] == "blender_trial"]
+    assert (tried["data"]["actors"][0]["name"], tried["data"]["others"]["count"]) == ("Planks", 2)
+
+
 def test_what_the_plan_states_wrongly_is_withdrawn_once_mending_was_tried(
     play: Callable[..., Played],
 ) -> None:

@@ -289,8 +289,22 @@ def on_free_bake(arguments):
 def on_trial(arguments):
     os.makedirs(arguments["folder"], exist_ok=True)
     leave(os.path.join(arguments["folder"], "1.png"), png(64, 64))
-    place = {"lowest": 0.0, "highest": 1.0, "middle": [0.0, 0.0, 0.5], "speed": 1.0}
-    sample = {"frame": 1, **place, "volume": 1.0, "depth": 0.1, "inside": "Floor"}
+    place = {
+        "lowest": 0.0,
+        "highest": 1.0,
+        "middle": [0.0, 0.0, 0.5],
+        "speed": 1.0,
+        "velocity": [1.0, 0.0, 0.0],
+    }
+    sample = {"frame": 1, "alive": None, **place, "volume": 1.0, "depth": 0.1, "inside": "Floor"}
+    cube = {
+        "name": "Cube",
+        "lowest": [0.0, 1],
+        "peak_speed": [1.0, 1],
+        "most_alive": None,
+        "samples": [sample],
+    }
+    swarm = {**cube, "name": "Rain", "most_alive": 3, "samples": [{**sample, "alive": 3}], "heights": []}
     return {
         "first": 1,
         "last": 2,
@@ -299,12 +313,13 @@ def on_trial(arguments):
         "whole": [100, 20.0],
         "stopped": "",
         "caches": ["cloth of 'Cube'"],
-        "actors": [{"name": "Cube", "lowest": 0.0, "peak_speed": 1.0, "samples": [sample]}],
+        "actors": [{**cube, "heights": [[1, 0.0, 1.0, None]]}, swarm],
         "others": {
             "count": 2,
             "moved": {"count": 1, "most": [["Brick", 0.5]]},
             "moving": {"count": 0, "most": []},
         },
+        "fallen": ["3 of 3 particles of 'Rain' have gone through 'Floor'."],
         "pictures": {"1": "1.png"},
         "notes": [],
     }

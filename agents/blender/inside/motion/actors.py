@@ -22,7 +22,7 @@ _THIN = 0.01  # density up to which a cell of gas counts as empty
 class Actor:
     """What moves as one: ``name``, its ``objects``, and what of them is ``measured``.
 
-    ``most``: about how many of its points are followed, evenly chosen; None for all.
+    ``most``: about how many of its points are followed, evenly chosen; None for all. Of particles all are.
     """
 
     def __init__(self, name, kind, objects, most=None):
@@ -48,10 +48,7 @@ class Actor:
             parts = [part for obj in evaluated for part in _particle_places(obj)]
             if not parts:
                 return None
-            places, alive = (
-                numpy.concatenate([thin_out(array, self._most) for array in each])
-                for each in zip(*parts, strict=True)
-            )
+            places, alive = (numpy.concatenate(each) for each in zip(*parts, strict=True))
             state = ActorState(places, alive=alive)
         elif self.measured == "fluid":
             fluids = [_fluid(obj) for obj in evaluated if domain_of(obj) is not None]

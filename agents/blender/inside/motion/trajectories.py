@@ -19,15 +19,16 @@ LINE = 1e-6  # how much worse, relatively, any other rotation must fit for the b
 class Track:
     """The measured motion of one actor: lists with an entry for each of ``frames``.
 
-    ``centres`` (None where it does not exist), ``lows`` and ``highs`` are places in metres; ``speeds`` (of the centre)
-    and ``point_speeds`` (mean over what is followed) are in m/s, ``rotations`` are axes as long as the angle in
-    radians; each since the frame before, None if unknown. ``deforms``: its points move against each other.
+    ``centres`` (None where it does not exist), ``lows`` and ``highs`` are places in metres; ``counts`` says how many
+    points are there; ``speeds`` (of the centre), ``point_speeds`` and ``velocities`` (vectors; both means over what is
+    followed) are in m/s, ``rotations`` are axes as long as the angle in radians; each since the frame before, None if
+    unknown. ``deforms``: its points move against each other.
     """
 
     def __init__(self, actor, fps):
         self.actor, self.fps = actor, fps
-        self.frames, self.centres, self.lows, self.highs = [], [], [], []
-        self.speeds, self.point_speeds, self.rotations = [], [], []
+        self.frames, self.centres, self.lows, self.highs, self.counts = [], [], [], [], []
+        self.speeds, self.point_speeds, self.velocities, self.rotations = [], [], [], []
         self.deforms = False
         self.strays = {}
         self.last = self._first = None
@@ -36,7 +37,7 @@ class Track:
         """Adds the actor's state at the next frame."""
         last = self.last
         seconds = (frame - self.frames[-1]) / self.fps if self.frames else 0.0
-        speed = point_speed = rotation = None
+        speed = point_speed = velocity = rotation = None
         if state is not None and last is not None:
             speed = (state.centre - last.centre).length / seconds
             if state.is_followed and len(state.places) == len(last.places):
@@ -44,8 +45,10 @@ class Track:
                 before, after = last.places[both], state.places[both]
                 if len(before):
                     areas = None if state.areas is None else state.areas[both]
-                    ways = numpy.linalg.norm(after - before, axis=1)
-                    point_speed = float(numpy.average(ways, weights=areas)) / seconds
+                    ways = after - before
+                    lengths = numpy.linalg.norm(ways, axis=1)
+                    point_speed = float(numpy.average(lengths, weights=areas)) / seconds
+                    velocity = Vector(numpy.average(ways, axis=0, weights=areas)) / seconds
                 if self.actor.measured != "particles":
                     rotation = best_rotation(before, after)
                     self.deforms = self.deforms or self._is_deformed(state)
@@ -54,7 +57,9 @@ class Track:
         self.lows.append(state and state.low)
         self.highs.append(state and state.high)
         self.speeds.append(speed)
+        self.counts.append(0 if state is None else int(state.alive.sum()))
         self.point_speeds.append(point_speed)
+        self.velocities.append(velocity)
         self.rotations.append(rotation)
         self.last, self._first = state, self._first or state
 
@@ -101,6 +106,12 @@ class Track:
             own if own is not None else other
             for own, other in zip(self.point_speeds, self.speeds, strict=True)
         ]
+
+    @property
+    def path(self):
+        """How far it has moved in all, by its main speeds, in metres."""
+        steps = zip(self.main_speeds[1:], self.frames[1:], self.frames[:-1], strict=True)
+        return sum((now - before) * speed for speed, now, before in steps if speed is not None) / self.fps
 
     @property
     def moved(self):

@@ -9,50 +9,47 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from ..blend.protocol_tags import object_collections
-from ..geometry.penetration import penetration
-from ..geometry.solids import Solids, Unmeasurable
+from ..blend.named_objects import objects_named
+from ..geometry.solids import Solids
 from ..physics import caches, stepped_frames
 from ..physics.finite_check import Diverged
 from ..preview.frame_pictures import FramePictures, PictureJob
 from .actors import resolve, round_to
-from .body_places import BodyPlaces
+from .followed import Followed
+from .solid_facts import solid_facts
 from .timeline import FrameStepper
-from .trajectories import Track
 from .viewpoints import path_view
 
-_MOST_ACTORS = 12
+_FOLLOWED = 100  # actors of which some are told of in full; others by their places alone
 _SAMPLES = 6  # frames that are drawn, and at which volumes and depths are measured
-_TOLD = 3  # actors in a line of progress
-_MOST_POINTS = 20_000  # of an actor that are followed
+_STREAMED = 3  # actors in a line of progress
+_MOST_POINTS = 240_000  # that are followed, of all actors
+_MOST_OF_ONE = 20_000
 _HEIGHTS = 30  # frames of which heights are told, of a few actors
 _FEW = 3
 _LATE = 4  # the last quarter of the frames tells what later ones will take
 _RAYS = 8
-_MOST_PARTNERS = 20  # of an actor, whose depth in it is measured
 
 
 def trial(arguments, report):
     """Steps ``frames`` frames of the simulations of ``objects`` (None: all), for at most ``seconds``.
 
+    Of many objects, those that are ``first`` or in such a collection are told of, then those that move most.
     ``folder`` gets the pictures (None: none are made), ``width`` pixels wide each. Caches that are baked are played.
     No bake is left behind, and the scene stays at its frame. Returns, in metres, m/s and seconds: the ``first`` and
     ``last`` frame, ``simulated`` (False: nothing had to be), ``seconds_per_frame`` (of all frames, and of the last
     ones), ``whole`` (frames of the whole bake, and the seconds it would take), ``stopped`` (why it ended early),
-    ``actors`` with their ``samples``, ``others`` (see BodyPlaces), ``pictures`` ({frame: file in ``folder``}) and
-    ``notes``.
+    ``actors`` with their ``samples``, ``others`` and ``fallen`` (see Followed), ``pictures`` ({frame: file in
+    ``folder``}) and ``notes``.
     """
     scene = bpy.context.scene
     chosen = caches.find_caches(scene) if arguments["objects"] is None else []
     names = arguments["objects"] or _simulated_names(scene, chosen)
-    actors = resolve(names[:_MOST_ACTORS], scene, _MOST_POINTS)
-    rest = [scene.objects[name] for name in names[_MOST_ACTORS:]]
+    first = _members(scene, arguments["first"])
+    names = sorted(names, key=lambda name: name not in first)
+    names, rest = names[:_FOLLOWED], [scene.objects[name] for name in names[_FOLLOWED:]]
+    actors = resolve(names, scene, min(_MOST_OF_ONE, _MOST_POINTS // len(names)))
     bodies = [obj for obj in rest if obj.rigid_body is not None]
-    notes = (
-        [f"Only the first {_MOST_ACTORS} of {len(names)} are measured in full. Name others to see those."]
-        if rest
-        else []
-    )
     parts = {obj.name for actor in actors for obj in actor.objects}
     own = caches.of_objects(scene, parts)
     if not own:
@@ -62,9 +59,9 @@ def trial(arguments, report):
             "Free the old bake first (blender_bake, free=true): it would be played here, and show nothing of what was "
             f"changed since: {', '.join(stale)}."
         )
-    notes += [f"Baked, so played as it is: {cache.label}." for cache in own if cache.baked]
+    notes = [f"Baked, so played as it is: {cache.label}." for cache in own if cache.baked]
     with _stepping_fluids(own, arguments["folder"]):
-        run = _Trial(scene, actors, bodies, arguments, report)
+        run = _Trial(scene, Followed(scene, actors, bodies, first, own), arguments, report)
         run.step()
         run.draw(notes)
     return {**run.result(own), "notes": notes}
@@ -82,6 +79,15 @@ def _simulated_names(scene, found):
     if not names:
         raise Refused("There is nothing to try: the scene has no simulation.")
     return names
+
+
+def _members(scene, names):
+    """The names of the objects that some names stand for; what the scene lacks is left out."""
+    members = set()
+    for name in names:
+        with contextlib.suppress(Refused):
+            members.update(obj.name for obj in objects_named(scene, [name])[name])
+    return members
 
 
 @contextlib.contextmanager
@@ -107,8 +113,8 @@ def _stepping_fluids(own, folder):
 class _Trial:
     """The frames that are stepped, and what is measured at them."""
 
-    def __init__(self, scene, actors, bodies, arguments, report):
-        self._scene, self._report = scene, report
+    def __init__(self, scene, followed, arguments, report):
+        self._scene, self._followed, self._report = scene, followed, report
         self._seconds, self._width = arguments["seconds"], arguments["width"]
         self._folder = arguments["folder"]
         self._stepper = FrameStepper(scene, scene.frame_start)
@@ -117,12 +123,9 @@ class _Trial:
         self._wanted = range(self._first, self._first + arguments["frames"])
         held = stepped_frames.last_held(scene)
         self._simulates = first is not None and (held is None or held < self._wanted[-1])
-        fps = scene.render.fps / scene.render.fps_base
-        self._tracks = [Track(actor, fps) for actor in actors]
-        self._others = BodyPlaces(bodies, fps)
         self._took = []
         self._stopped = ""
-        self._solid_facts = {}
+        self._solid_facts = {}  # frame → {track: its facts}
         self._pictures = {}
 
     def step(self):
@@ -135,9 +138,7 @@ class _Trial:
             try:
                 for frame, graph in steps:
                     self._took.append(time.monotonic() - started[-1])
-                    for track in self._tracks:
-                        track.add(frame, track.actor.state_at(graph))
-                    self._others.add(graph)
+                    self._followed.add(frame, graph)
                     if frame in samples or frame == self._wanted[-1]:
                         self._measure_solids(frame)
                     self._report(len(self._took), len(self._wanted), self._line(frame))
@@ -154,34 +155,37 @@ class _Trial:
         """What is streamed of a frame."""
         told = [
             f"{track.actor.name}: {_where(track)}"
-            for track in self._tracks[:_TOLD]
+            for track in self._followed.tracks[:_STREAMED]
             if track.centres[-1] is not None
         ]
         return f"frame {frame} in {self._took[-1]:.2f} s; {'; '.join(told)}"
 
     def _measure_solids(self, frame):
-        if self._solid_facts.get(frame):
+        if frame in self._solid_facts:
             return
         solids = Solids()
-        self._solid_facts[frame] = [_solid_facts(track.actor, solids, self._scene) for track in self._tracks]
+        self._solid_facts[frame] = {
+            track: solid_facts(track.actor, solids, self._scene) for track in self._followed.shown()
+        }
 
     def draw(self, notes):
         """Draws the measured frames, if they can be visited again without simulating them again."""
         if self._width is None or not self._took:
             return
-        frames = [frame for frame in self._solid_facts if self._tracks[0].frames[0] <= frame]
-        view = path_view(_All(self._tracks), self._width)
+        tracks = self._followed.shown()
+        frames = [frame for frame in self._solid_facts if tracks[0].frames[0] <= frame]
+        view = path_view(_All(tracks), self._width)
         stepper = FrameStepper(self._scene, self._first)
         if view is None or stepper.count(frames) > len(frames):
             notes.append("No pictures: the frames would have to be simulated again.")
             return
         os.makedirs(self._folder, exist_ok=True)
         pictures = FramePictures(self._scene)
-        names = {obj.name for track in self._tracks for obj in track.actor.objects}
+        names = {obj.name for track in tracks for obj in track.actor.objects}
         with stepper:
             for frame, graph in stepper.through(sorted(frames), lambda _frame: None):
                 path = os.path.join(self._folder, f"{frame}.png")
-                states = [track.actor.state_at(graph) for track in self._tracks]
+                states = [track.actor.state_at(graph) for track in tracks]
                 points = [point for state in states if state is not None for point in state.sample(_RAYS)]
                 for _ in pictures.render([PictureJob(names, points, view, path)]):
                     self._pictures[str(frame)] = os.path.basename(path)
@@ -193,6 +197,7 @@ class _Trial:
         late = self._took[-max(1, len(self._took) // _LATE) :]
         pace = sum(late) / len(late) if late else 0.0
         left = max(0, self._scene.frame_end - last)
+        told = self._followed.told()
         return {
             "first": self._first,
             "last": last,
@@ -201,30 +206,38 @@ class _Trial:
             "whole": [self._scene.frame_end - self._first + 1, sum(self._took) + left * pace],
             "stopped": self._stopped,
             "caches": [cache.label for cache in own],
-            "actors": [self._actor_entry(number, track) for number, track in enumerate(self._tracks)],
-            "others": self._others.summary(),
+            "actors": [self._actor_entry(track, len(told)) for track in told],
+            "others": self._followed.others(),
+            "fallen": self._followed.fallen(),
             "pictures": self._pictures,
         }
 
-    def _actor_entry(self, number, track):
-        told = min(len(track.frames), _HEIGHTS // max(1, len(self._tracks) // _FEW))
-        lows = [low.z for low in track.lows if low is not None]
-        speeds = [speed for speed in track.main_speeds if speed is not None]
+    def _actor_entry(self, track, count):
+        lowest = min((low.z, frame) for low, frame in _there(track.lows, track)) if any(track.lows) else None
+        speeds = _there(track.main_speeds, track)
+        peak = max(speeds, key=lambda pair: pair[0]) if speeds else None
+        is_swarm = track.actor.measured == "particles"
         return {
             "name": track.actor.name,
-            "lowest": round_to(min(lows)) if lows else None,
-            "peak_speed": round_to(max(speeds)) if speeds else None,
-            "heights": [
-                [frame, round_to(track.lows[at].z), round_to(track.highs[at].z)]
-                for frame, at in ((frame, track.frames.index(frame)) for frame in _evenly(track.frames, told))
-                if track.lows[at] is not None
-            ],
+            "lowest": lowest and [round_to(lowest[0]), lowest[1]],
+            "peak_speed": peak and [round_to(peak[0]), peak[1]],
+            "most_alive": max(track.counts, default=0) if is_swarm else None,
+            "heights": [] if is_swarm else self._heights(track, count),
             "samples": [
-                {"frame": frame, **_place(track, frame), **facts[number]}
+                {"frame": frame, **_place(track, frame), **facts.get(track, {})}
                 for frame, facts in sorted(self._solid_facts.items())
                 if frame in track.frames
             ],
         }
+
+    def _heights(self, track, count):
+        """[frame, lowest, highest point, speed] at the samples, and at frames between, of few actors at more."""
+        between = _evenly(track.frames, min(len(track.frames), _HEIGHTS // max(1, count // _FEW)))
+        return [
+            [frame, round_to(track.lows[at].z), round_to(track.highs[at].z), round_to(track.main_speeds[at])]
+            for at, frame in enumerate(track.frames)
+            if track.lows[at] is not None and (frame in between or frame in self._solid_facts)
+        ]
 
 
 class _All:
@@ -247,6 +260,11 @@ def _mean(values):
     return sum(values) / len(values) if values else 0.0
 
 
+def _there(values, track):
+    """(value, frame) of those that are not None."""
+    return [(value, frame) for value, frame in zip(values, track.frames, strict=True) if value is not None]
+
+
 def _where(track):
     speed = track.main_speeds[-1]
     return f"lowest {track.lows[-1].z:.3f} m" + (f", {speed:.2f} m/s" if speed is not None else "")
@@ -254,65 +272,14 @@ def _where(track):
 
 def _place(track, frame):
     at = track.frames.index(frame)
-    low, high, centre = track.lows[at], track.highs[at], track.centres[at]
+    low, high, centre, velocity = (
+        each[at] for each in (track.lows, track.highs, track.centres, track.velocities)
+    )
     return {
+        "alive": track.counts[at] if track.actor.measured == "particles" else None,
         "lowest": low and round_to(low.z),
         "highest": high and round_to(high.z),
         "middle": centre and [round_to(part) for part in centre],
         "speed": round_to(track.main_speeds[at]),
+        "velocity": velocity and [round_to(part) for part in velocity],
     }
-
-
-def _solid_facts(actor, solids, scene):
-    """{"volume": of closed meshes, "depth": how deep it is in another rendered mesh, "inside": that one's name}."""
-    facts = {"volume": None, "depth": None, "inside": None}
-    if actor.measured not in {"vertices", "fluid"}:
-        return facts
-    names = [obj.name for obj in actor.objects]
-    try:
-        solid = solids.joined(names)
-    except Unmeasurable:
-        return facts
-    if solid.closed:
-        facts["volume"] = round_to(_volume(solid), 1e-6)
-    if actor.measured == "fluid":
-        return facts
-    own = {*names, *(obj.name for one in object_collections(scene) for obj in _own(one, names))}
-    for other in _partners(solid, own, solids, scene):
-        try:
-            shared = penetration(solid, other)
-        except Unmeasurable:
-            continue
-        if shared is not None and shared[0] is not None and shared[0] > (facts["depth"] or 0.0):
-            facts["depth"], facts["inside"] = round_to(float(shared[0]), 1e-5), other.name
-    return facts
-
-
-def _own(collection, names):
-    """All of an object of the protocol that has one of these: its cage is in its body, and in nothing else."""
-    members = list(collection.all_objects)
-    return members if any(obj.name in names for obj in members) else []
-
-
-def _volume(solid):
-    a, b, c = (solid.points[solid.triangles[:, corner]] for corner in range(3))
-    first, second = b - a, c - a
-    normal = first[:, [1, 2, 0]] * second[:, [2, 0, 1]] - first[:, [2, 0, 1]] * second[:, [1, 2, 0]]
-    return abs(float((a * normal).sum()) / 6)
-
-
-def _partners(solid, names, solids, scene):
-    """The solids of other meshes that are rendered and whose boxes overlap that of ``solid``."""
-    there = []
-    for obj in scene.objects:
-        if obj.type != "MESH" or obj.name in names or obj.hide_render or not obj.visible_get():
-            continue
-        if any(modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN" for modifier in obj.modifiers):
-            continue
-        with contextlib.suppress(Unmeasurable):
-            other = solids[obj.name]
-            if (solid.low < other.high).all() and (other.low < solid.high).all():
-                there.append(other)
-                if len(there) == _MOST_PARTNERS:
-                    break
-    return there

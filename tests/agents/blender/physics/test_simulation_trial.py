@@ -38,8 +38,12 @@ def test_a_trial_tells_heights_speeds_pace_and_shows_a_strip(session: LiveSessio
     assert set(actors) == {"Flag", "Brick"}
     brick = actors["Brick"]["samples"]
     assert [sample["frame"] for sample in brick] == [1, 3, 5, 6, 8, 10]
-    assert [frame for frame, _, _ in actors["Brick"]["heights"]] == [*range(1, 11)]
-    assert "frame: lowest and highest point, m: 1: 1.500 2.500; 2: " in found.text
+    assert [frame for frame, *_ in actors["Brick"]["heights"]] == [*range(1, 11)]
+    assert "frame: lowest, highest point (m), speed (m/s): 1: 1.500 2.500; 2: " in found.text
+    assert found.text.count("1.500 2.500") == 1, "a height is told twice"
+    assert found.text.count(" 1 m³") == 1, "a volume that stays is told more than once"
+    assert actors["Brick"]["lowest"] == (brick[-1]["lowest"], 10)
+    assert actors["Brick"]["peak_speed"] == (brick[-1]["speed"], 10)
     assert brick[-1]["volume"] == pytest.approx(1, rel=1e-3)
     assert brick[-1]["lowest"] == pytest.approx(1.5 - 9.81 / 2 * (9 / 24) ** 2, abs=0.05)  # free fall
     assert brick[-1]["speed"] == pytest.approx(9.81 * 8.5 / 24, rel=0.1)
@@ -49,34 +53,121 @@ def test_a_trial_tells_heights_speeds_pace_and_shows_a_strip(session: LiveSessio
     assert strip.png.startswith(b"\x89PNG")
 
 
-def test_bodies_that_are_not_measured_in_full_are_told_by_how_far_they_move(session: LiveSession) -> None:
-    session.run("""
+MANY = """
 scene = bpy.context.scene
 for number in range(20):
-    bpy.ops.mesh.primitive_cube_add(size=0.2, location=(number, 0, 5 if number != 15 else 0.1))
+    at_rest = number in (2, 15)
+    bpy.ops.mesh.primitive_cube_add(size=0.2, location=(number, 0, 0.1 if at_rest else 5))
     bpy.context.object.name = f"Brick {number:02}"
     bpy.ops.rigidbody.object_add()
-    bpy.context.object.rigid_body.use_start_deactivated = number == 15
-    bpy.context.object.rigid_body.use_deactivation = number == 15
-""")
+    bpy.context.object.rigid_body.use_start_deactivated = at_rest
+    bpy.context.object.rigid_body.use_deactivation = at_rest
+"""
+
+
+def test_of_many_bodies_those_that_move_are_told_in_full_and_of_others_how_far(session: LiveSession) -> None:
+    session.run(MANY)
     found = session.use(TOOL, frames=13, pictures=False)
-    assert len(found.data["actors"]) == 12
-    assert {len(actor["heights"]) for actor in found.data["actors"]} == {7}
+    told = [actor["name"] for actor in found.data["actors"]]
+    assert len(told) == 12
+    assert not {"Brick 02", "Brick 15"} & set(told), "what rests is told in full"
+    assert {len(actor["heights"]) for actor in found.data["actors"]} == {9}
     others = found.data["others"]
-    assert (others["count"], others["moved"]["count"], others["moving"]["count"]) == (8, 7, 7)
+    assert (others["count"], others["moved"]["count"], others["moving"]["count"]) == (8, 6, 6)
     for name, metres in others["moved"]["most"]:
         assert metres == pytest.approx(9.81 / 2 * (12 / 24) ** 2, rel=0.1), name
     for name, speed in others["moving"]["most"]:
         assert speed == pytest.approx(9.81 * 11.5 / 24, rel=0.1), name
-    assert "- Other bodies: 8, of which 7 have moved ('Brick 12' 1.2" in found.text
-    assert "only the first 12 of 20 are measured in full" in found.text.lower()
+    assert "- Others: 8, of which 6 have moved ('Brick 1" in found.text
+    assert "Name others" in found.text
+
+
+def test_of_many_bodies_those_that_are_asked_for_first_are_told_first(session: LiveSession) -> None:
+    session.run(
+        f"{MANY}\none = bpy.data.collections.new('One')\nscene.collection.children.link(one)\n"
+        "one.objects.link(bpy.data.objects['Brick 15'])"
+    )
+    found = session.use(TOOL, frames=3, pictures=False, first=["One", "Brick 19", "not there"])
+    assert [actor["name"] for actor in found.data["actors"]][:2] == ["Brick 15", "Brick 19"]
+
+
+# Particles from above a floor, of which some are born 30 frames before the cache's first one.
+RAIN = """
+scene = bpy.context.scene
+scene.frame_end = 40
+bpy.ops.mesh.primitive_cube_add(size=1, location=(0, 0, -0.1))
+floor = bpy.context.object
+floor.name, floor.scale = 'Floor', (20, 20, 0.2)
+bpy.ops.mesh.primitive_plane_add(size=2, location=(0, 0, 1))
+bpy.context.object.name = 'Cloud'
+rain = bpy.context.object.modifiers.new('Rain', 'PARTICLE_SYSTEM').particle_system.settings
+rain.count, rain.lifetime, rain.normal_factor = 200, 200, 0
+rain.frame_start, rain.frame_end = {start}, 30
+{partner}
+"""
+COLLIDES = "floor.modifiers.new('Collision', 'COLLISION')"
+
+
+def test_a_swarm_is_told_by_how_many_there_are_where_and_which_way(session: LiveSession) -> None:
+    session.run(RAIN.format(start=1, partner=COLLIDES) + "scene.gravity = (9.81, 0, 0)")
+    found = session.use(TOOL, frames=9, pictures=False)
+    (cloud,) = found.data["actors"]
+    first, *_, last = cloud["samples"]
+    assert (first["frame"], last["frame"], first["alive"]) == (1, 9, 1)
+    assert last["alive"] == cloud["most_alive"] == pytest.approx(200 * 8 / 29, abs=2)
+    assert last["velocity"] == pytest.approx((last["speed"], 0, 0), abs=1e-3), "they fall along X"
+    assert 0 < last["middle"][0] < 9.81 / 2 * (8 / 24) ** 2
+    assert f"frame 9: {last['alive']} alive, mean place (" in found.text
+    assert cloud["heights"] == []
+    assert found.data["fallen"] == []
+
+
+@pytest.mark.parametrize(
+    ("start", "partner", "cause"),
+    [
+        (1, COLLIDES, None),
+        (-30, COLLIDES, "born before the cache's first frame, 1,"),
+        (1, "", None),  # no more than any other mesh
+        (1, "ground = bpy.data.collections.new('ground')\nscene.collection.children.link(ground)\n"
+            "ground['protocol_role'] = 'system'\nground.objects.link(floor)", "no Collision modifier"),
+        (-30, COLLIDES + "\nfloor.collision.permeability = 1", None),
+    ],
+)  # fmt: skip
+def test_particles_that_have_gone_through_a_floor_are_told_with_the_cause(
+    session: LiveSession, start: int, partner: str, cause: str | None
+) -> None:
+    session.run(RAIN.format(start=start, partner=partner))
+    found = session.use(TOOL, frames=40, pictures=False)
+    if cause is None:
+        assert found.data["fallen"] == []
+        return
+    (fault,) = found.data["fallen"]
+    assert "particles of 'Cloud' have gone through 'Floor'" in fault
+    assert cause in fault
+    assert f"**{fault[:1].upper()}{fault[1:]}**" in found.text
+
+
+def test_particles_that_are_blown_below_a_thing_have_not_gone_through_it(session: LiveSession) -> None:
+    """They fall past its edge, and go on below it."""
+    session.run(
+        RAIN.format(start=1, partner=COLLIDES)
+        + "floor.scale = (20, 2, 0.2)\nfloor.location.y = 1.2\nfloor.location.z = 0.5\nrain.frame_end = 2\n"
+        "scene.frame_set(1)\nbpy.data.objects['Cloud'].scale.y = 0.1\n"
+        "scene.gravity = (0, 6, -9.81)"
+    )
+    found = session.use(TOOL, frames=24, pictures=False)
+    low, high = 0.2, 2.2  # the floor's sides
+    middle = found.data["actors"][0]["samples"][-1]["middle"]
+    assert low < middle[1] < high
+    assert middle[2] < 0.3
+    assert found.data["fallen"] == []
 
 
 def test_a_trial_past_its_deadline_still_says_what_a_frame_took(session: LiveSession) -> None:
     session.run(f"""{CLOTH_ON_BALL}
 import time
 bpy.app.handlers.frame_change_post.append(lambda *_: time.sleep(0.5))""")
-    wanted = {"objects": None, "frames": 99, "seconds": 99, "folder": "/nowhere", "width": None}
+    wanted = {"objects": None, "first": [], "frames": 99, "seconds": 99, "folder": "/nowhere", "width": None}
     with pytest.raises(TookTooLong, match=r"4 s \(the last it told: frame \d+ in .* s; Flag: lowest"):
         session.blender.call("trial", wanted, unread, timeout=4)
 
@@ -114,6 +205,7 @@ def test_a_trial_ends_when_its_time_is_over(session: LiveSession) -> None:
     session.run(CLOTH_ON_BALL)
     arguments: dict[str, Any] = {
         "objects": None,
+        "first": [],
         "frames": 12,
         "seconds": 0,
         "folder": ".none",
