@@ -5,13 +5,23 @@ from __future__ import annotations
 import secrets
 from typing import TYPE_CHECKING, Annotated, Any
 
+from PIL import Image
 from pydantic import Field
 from pydantic.json_schema import SkipJsonSchema
 
-from agents.blender.sheets.contact_sheet import Panel, grid, sheet, to_png
+from agents.blender.sheets.contact_sheet import (
+    Panel,
+    draw_scale_bar,
+    grid,
+    paragraph,
+    sheet,
+    stack,
+    to_png,
+)
 from agents.blender.sheets.worker_pictures import taken_picture
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
 from agents.blender.tools.preview_files import new_preview
+from simworlds.counting import format_list
 from simworlds.sandbox.replies import Claim, Frame, Name, Text
 
 if TYPE_CHECKING:
@@ -22,6 +32,7 @@ if TYPE_CHECKING:
 _Count = Annotated[int, Field(ge=0, le=10**9)]
 _WIDTH = 240  # of a picture, in pixels
 _COLUMNS = 3
+_MOST_STRIPS, _NAMED = 4, 6
 _SPARE_SECONDS = 120.0  # for the frame that runs when the time is up, and for the pictures
 _MOST, _MOST_FIRST = 100, 200
 _SAME_VOLUME = 0.01  # in parts, by which it may change and still be told once
@@ -93,6 +104,16 @@ class _Others(Claim):
     moving: _Ranked
 
 
+class _Strip(Claim):
+    """Pictures of some objects, by frame."""
+
+    of: list[Name] = Field(min_length=1, max_length=_MOST)
+    metres_per_pixel: float = Field(gt=0)
+    files: dict[
+        Annotated[str, Field(pattern=r"^-?\d{1,7}$")], Annotated[str, Field(pattern=r"^\d+-(-?\d+)\.png$")]
+    ] = Field(min_length=1)
+
+
 class _TrialReply(Claim):
     """Blender's reply."""
 
@@ -106,9 +127,7 @@ class _TrialReply(Claim):
     actors: list[_ActorTrial] = Field(max_length=_MOST)
     others: _Others | None
     fallen: list[Text] = Field(max_length=_MOST)
-    pictures: dict[
-        Annotated[str, Field(pattern=r"^-?\d{1,7}$")], Annotated[str, Field(pattern=r"^-?\d+\.png$")]
-    ]
+    pictures: list[_Strip] = Field(max_length=_MOST_STRIPS)
     notes: list[Text] = Field(max_length=_MOST)
 
 
@@ -142,14 +161,34 @@ def run(context: ToolContext, arguments: TrialArguments, call: Call) -> Result:
 
 
 def _strip(blender: Supervisor, trial: _TrialReply, folder: str) -> tuple[SavedImage, ...]:
-    panels = [
-        Panel(taken_picture(blender, f"{folder}/{name}"), f"frame {frame}")
-        for frame, name in sorted(trial.pictures.items(), key=lambda pair: int(pair[0]))[: 2 * _COLUMNS]
-    ]
-    if not panels:
+    is_one = len(trial.pictures) == 1
+    blocks: list[Image.Image] = []
+    for strip in trial.pictures:
+        panels = _panels(blender, strip, folder, is_large=is_one)
+        grids = [grid(panels, _COLUMNS if is_one else len(panels))]
+        blocks.append(stack(grids if is_one else [_heading(strip.of, grids[0].width), *grids]))
+    if not blocks:
         return ()
-    title = f"Trial of {', '.join(actor.name for actor in trial.actors)}"
-    return (new_preview(blender.folder, "trial", to_png(sheet(title, [grid(panels, _COLUMNS)]))),)
+    title = f"Trial of {format_list([actor.name for actor in trial.actors], _NAMED)}"
+    return (new_preview(blender.folder, "trial", to_png(sheet(title, blocks))),)
+
+
+def _heading(names: list[str], width: int) -> Image.Image:
+    return paragraph(format_list(names, _NAMED), width)
+
+
+def _panels(blender: Supervisor, strip: _Strip, folder: str, *, is_large: bool) -> list[Panel]:
+    """The pictures of a strip, ``_WIDTH`` pixels wide, or as they were drawn: twice that."""
+    panels: list[Panel] = []
+    for frame, name in sorted(strip.files.items(), key=lambda pair: int(pair[0]))[: 2 * _COLUMNS]:
+        picture = taken_picture(blender, f"{folder}/{name}")
+        if not is_large:
+            height = max(1, round(picture.height * _WIDTH / picture.width))
+            picture = picture.resize((_WIDTH, height), Image.Resampling.BOX)
+        panels.append(Panel(picture, f"frame {frame}"))
+    first = panels[0].picture
+    draw_scale_bar(first, strip.metres_per_pixel * _WIDTH / first.width)
+    return panels
 
 
 def _lines(trial: _TrialReply) -> Iterator[str]:

@@ -288,7 +288,7 @@ def on_free_bake(arguments):
 
 def on_trial(arguments):
     os.makedirs(arguments["folder"], exist_ok=True)
-    leave(os.path.join(arguments["folder"], "1.png"), png(64, 64))
+    leave(os.path.join(arguments["folder"], "0-1.png"), png(64, 64))
     place = {
         "lowest": 0.0,
         "highest": 1.0,
@@ -320,7 +320,7 @@ def on_trial(arguments):
             "moving": {"count": 0, "most": []},
         },
         "fallen": ["3 of 3 particles of 'Rain' have gone through 'Floor'."],
-        "pictures": {"1": "1.png"},
+        "pictures": [{"of": ["Cube"], "metres_per_pixel": 0.01, "files": {"1": "0-1.png"}}],
         "notes": [],
     }
 

@@ -15,7 +15,10 @@ from ..blend.protocol_tags import ROOT, object_collections
 from ..geometry.evaluated_meshes import coordinates, transformed
 
 _EVALUATES_TO_MESH = {"CURVE", "SURFACE", "META", "FONT"}
+_DOTS = 500  # particles that a picture shows at least by a dot
 _EMITTING = {"EMITTER", "FLIP"}
+_SWARM = 20  # particles from which the farthest ones do not count for where most are
+_MOST = (5, 95)  # per cent between which, along each axis, most are
 _THIN = 0.01  # density up to which a cell of gas counts as empty
 
 
@@ -79,7 +82,8 @@ class ActorState:
     ``places`` (n × 3, metres) are those of its points, the same ones in every state with as many; ``alive`` is a mask
     of those that exist. Points with ``weights``, as of a fluid, are not the same from frame to frame; ``areas`` are
     those of the surface around each point. ``centre`` is the mean of the places, by either, ``low`` and ``high`` are
-    the corners of the box along the world's axes.
+    the corners of the box along the world's axes, ``core`` those of the box that a picture is to show: of a swarm that
+    where most are. ``covariance`` (3 × 3, m²) says how far the places are spread about their mean.
     """
 
     def __init__(self, places, *, alive=None, weights=None, areas=None):
@@ -96,11 +100,20 @@ class ActorState:
                 numpy.average(there, axis=0, weights=weights if self.areas is None else self.areas)
             )
             self.low, self.high = Vector(there.min(axis=0)), Vector(there.max(axis=0))
+            self.core = self.low, self.high
+            if alive is not None and len(there) >= _SWARM:
+                self.core = tuple(map(Vector, numpy.percentile(there, _MOST, axis=0)))
+            self.covariance = numpy.cov(there, rowvar=False, bias=True, aweights=weights)
 
     def sample(self, count):
         """About ``count`` of its points, evenly chosen."""
         there = self.places[self.alive]
         return [Vector(place) for place in there[:: max(1, len(there) // count)].tolist()]
+
+
+def dots_of(actor, state):
+    """Places at which a picture gets dots to show an actor: those of particles, which are small; else none."""
+    return state.sample(_DOTS) if actor.measured == "particles" and state is not None else []
 
 
 def resolve(names, scene, most=None):

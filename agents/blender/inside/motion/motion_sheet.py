@@ -9,7 +9,7 @@ from simworlds.sandbox.inside.refusal import Refused
 
 from ..physics.caches import of_objects
 from ..preview.frame_pictures import FramePictures, PictureJob
-from .actors import resolve
+from .actors import dots_of, resolve
 from .contacts import Contacts
 from .keyed_frames import keyed_frames
 from .reliability_notes import notes_on
@@ -161,7 +161,7 @@ class _PictureStrips:
     def plan(self):
         """Chooses the views, once the tracks are complete."""
         for number, track in enumerate(self._tracks):
-            view = path_view(track, self._tile)
+            view = path_view([track], self._tile)
             if view is None:
                 continue
             self._add(number, "path", dict.fromkeys(self._sampled, view))
@@ -186,7 +186,8 @@ class _PictureStrips:
         for number, view, path in self._jobs[frame]:
             names = {obj.name for obj in self._tracks[number].actor.objects}
             state = states[number]
-            jobs.append(PictureJob(names, state.sample(_RAYS) if state is not None else [], view, path))
+            points = state.sample(_RAYS) if state is not None else []
+            jobs.append(PictureJob(names, points, view, path, dots_of(self._tracks[number].actor, state)))
         for number, _ in enumerate(pictures.render(jobs), 1):
             progress.part(number / len(jobs), f"drawing frame {frame}")
 

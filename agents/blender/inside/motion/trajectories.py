@@ -19,15 +19,17 @@ LINE = 1e-6  # how much worse, relatively, any other rotation must fit for the b
 class Track:
     """The measured motion of one actor: lists with an entry for each of ``frames``.
 
-    ``centres`` (None where it does not exist), ``lows`` and ``highs`` are places in metres; ``counts`` says how many
-    points are there; ``speeds`` (of the centre), ``point_speeds`` and ``velocities`` (vectors; both means over what is
-    followed) are in m/s, ``rotations`` are axes as long as the angle in radians; each since the frame before, None if
-    unknown. ``deforms``: its points move against each other.
+    ``centres`` (None where it does not exist), ``lows`` and ``highs`` are places in metres, ``cores`` and
+    ``covariances`` those of its states, ``counts`` says how many points are there; ``speeds`` (of the centre),
+    ``point_speeds`` and ``velocities`` (vectors; both means over what is followed) are in m/s, ``rotations`` are axes
+    as long as the angle in radians; each since the frame before, None if unknown. ``deforms``: its points move
+    against each other.
     """
 
     def __init__(self, actor, fps):
         self.actor, self.fps = actor, fps
         self.frames, self.centres, self.lows, self.highs, self.counts = [], [], [], [], []
+        self.cores, self.covariances = [], []
         self.speeds, self.point_speeds, self.velocities, self.rotations = [], [], [], []
         self.deforms = False
         self.strays = {}
@@ -56,6 +58,8 @@ class Track:
         self.centres.append(state and state.centre)
         self.lows.append(state and state.low)
         self.highs.append(state and state.high)
+        self.cores.append(state and state.core)
+        self.covariances.append(state and state.covariance)
         self.speeds.append(speed)
         self.counts.append(0 if state is None else int(state.alive.sum()))
         self.point_speeds.append(point_speed)

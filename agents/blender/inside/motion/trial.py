@@ -13,12 +13,11 @@ from ..blend.named_objects import objects_named
 from ..geometry.solids import Solids
 from ..physics import caches, stepped_frames
 from ..physics.finite_check import Diverged
-from ..preview.frame_pictures import FramePictures, PictureJob
 from .actors import resolve, round_to
 from .followed import Followed
 from .solid_facts import solid_facts
 from .timeline import FrameStepper
-from .viewpoints import path_view
+from .trial_pictures import TrialPictures
 
 _FOLLOWED = 100  # actors of which some are told of in full; others by their places alone
 _SAMPLES = 6  # frames that are drawn, and at which volumes and depths are measured
@@ -28,7 +27,6 @@ _MOST_OF_ONE = 20_000
 _HEIGHTS = 30  # frames of which heights are told, of a few actors
 _FEW = 3
 _LATE = 4  # the last quarter of the frames tells what later ones will take
-_RAYS = 8
 
 
 def trial(arguments, report):
@@ -39,8 +37,8 @@ def trial(arguments, report):
     No bake is left behind, and the scene stays at its frame. Returns, in metres, m/s and seconds: the ``first`` and
     ``last`` frame, ``simulated`` (False: nothing had to be), ``seconds_per_frame`` (of all frames, and of the last
     ones), ``whole`` (frames of the whole bake, and the seconds it would take), ``stopped`` (why it ended early),
-    ``actors`` with their ``samples``, ``others`` and ``fallen`` (see Followed), ``pictures`` ({frame: file in
-    ``folder``}) and ``notes``.
+    ``actors`` with their ``samples``, ``others`` and ``fallen`` (see Followed), ``pictures`` (see TrialPictures) and
+    ``notes``.
     """
     scene = bpy.context.scene
     chosen = caches.find_caches(scene) if arguments["objects"] is None else []
@@ -126,7 +124,7 @@ class _Trial:
         self._took = []
         self._stopped = ""
         self._solid_facts = {}  # frame → {track: its facts}
-        self._pictures = {}
+        self._pictures = []
 
     def step(self):
         """Visits the frames until the time is up or a simulation is not finite."""
@@ -172,23 +170,16 @@ class _Trial:
         """Draws the measured frames, if they can be visited again without simulating them again."""
         if self._width is None or not self._took:
             return
-        tracks = self._followed.shown()
-        frames = [frame for frame in self._solid_facts if tracks[0].frames[0] <= frame]
-        view = path_view(_All(tracks), self._width)
+        frames = sorted(self._solid_facts)
+        pictures = TrialPictures(self._scene, self._followed.shown(), self._width, self._folder)
         stepper = FrameStepper(self._scene, self._first)
-        if view is None or stepper.count(frames) > len(frames):
+        if not pictures.any or stepper.count(frames) > len(frames):
             notes.append("No pictures: the frames would have to be simulated again.")
             return
-        os.makedirs(self._folder, exist_ok=True)
-        pictures = FramePictures(self._scene)
-        names = {obj.name for track in tracks for obj in track.actor.objects}
         with stepper:
-            for frame, graph in stepper.through(sorted(frames), lambda _frame: None):
-                path = os.path.join(self._folder, f"{frame}.png")
-                states = [track.actor.state_at(graph) for track in tracks]
-                points = [point for state in states if state is not None for point in state.sample(_RAYS)]
-                for _ in pictures.render([PictureJob(names, points, view, path)]):
-                    self._pictures[str(frame)] = os.path.basename(path)
+            for frame, graph in stepper.through(frames, lambda _frame: None):
+                pictures.draw(frame, graph)
+        self._pictures = pictures.as_data()
         notes += pictures.notes
 
     def result(self, own):
@@ -238,17 +229,6 @@ class _Trial:
             for at, frame in enumerate(track.frames)
             if track.lows[at] is not None and (frame in between or frame in self._solid_facts)
         ]
-
-
-class _All:
-    """Several tracks as one, as a view needs it."""
-
-    def __init__(self, tracks):
-        self.lows, self.highs, self.centres = [], [], []
-        for track in tracks:
-            self.lows += track.lows
-            self.highs += track.highs
-            self.centres += track.centres
 
 
 def _evenly(frames, count):

@@ -3,13 +3,16 @@
 
 import math
 
+import numpy
 from mathutils import Matrix, Vector
 
 from ..preview.framing import BoundingBox, camera_rotation
 
 # (azimuth, elevation) in degrees, preferred first; azimuth 0 looks along +Y, 90 along -X.
 _ANGLES = ((30, 24), (-30, 24), (60, 24), (-60, 24), (0, 24), (90, 24), (30, 45), (-30, 45), (0, 65))
-_WORTH = 1.06  # how much more of the motion a less preferred angle must show
+_ENOUGH = (
+    0.85  # of what the best angle shows; a wide margin, so that the next trial is seen from the same side
+)
 _AROUND = 1.22  # size of the view, in sizes of what must be visible
 _CLOSE_AROUND = 1.5
 _FLATTEST, _TALLEST = 0.62, 1.25  # height of a picture, in widths
@@ -46,12 +49,12 @@ class OrthographicView:
         }
 
 
-def path_view(track, tile):
-    """The view of everything that a track covers, in pictures ``tile`` pixels wide; None if it never exists."""
-    boxes = [(low, high) for low, high in zip(track.lows, track.highs, strict=True) if low is not None]
+def path_view(tracks, tile):
+    """The view of everything that some tracks cover, in pictures ``tile`` pixels wide; None if none ever exists."""
+    boxes = [core for track in tracks for core in track.cores if core is not None]
     if not boxes:
         return None
-    angle = _best_angle([centre for centre in track.centres if centre is not None])
+    angle = _best_angle(_spread(tracks))
     centre, across, upward, depth = _fit(angle, boxes)
     size = max(_size(low, high) for low, high in boxes)
     across = max(across * _AROUND, size * _AROUND * 1.2, 1e-3)
@@ -63,19 +66,17 @@ def path_view(track, tile):
 
 def wants_close_views(track, view):
     """Whether the actor is too small to be seen well in that view."""
-    sizes = [_size(low, high) for low, high in zip(track.lows, track.highs, strict=True) if low is not None]
+    sizes = [_size(*core) for core in track.cores if core is not None]
     return track.actor.measured == "vertices" and 1e-4 * view.width < max(sizes) < _SMALL * view.width
 
 
 def close_view(track, view, frame):
     """A view of the actor alone at a frame, at the same scale for every frame; None if it does not exist there."""
     at = track.frames.index(frame)
-    if track.lows[at] is None:
+    if track.cores[at] is None:
         return None
-    largest = max(
-        _size(low, high) for low, high in zip(track.lows, track.highs, strict=True) if low is not None
-    )
-    centre, _, _, depth = _fit(view.angle, [(track.lows[at], track.highs[at])])
+    largest = max(_size(*core) for core in track.cores if core is not None)
+    centre, _, _, depth = _fit(view.angle, [track.cores[at]])
     tile = view.size[0]
     width = largest * _CLOSE_AROUND
     return OrthographicView(
@@ -97,21 +98,25 @@ def _axes(angle):
     return tuple(axis.copy() for axis in camera_rotation(towards, (0, 0, 1)).col)
 
 
-def _best_angle(places):
-    """The angle from which the most of a path is visible."""
-    mean = sum(places, Vector()) / len(places)
-    best, best_spread = _ANGLES[0], -1.0
-    for angle in _ANGLES:
-        towards = _axes(angle)[2]
-        spread = math.sqrt(
-            # Of what stands still far away, rounding alone is left, which may be below 0.
-            sum(
-                max(0.0, (place - mean).length_squared - (place - mean).dot(towards) ** 2) for place in places
-            )
-        )
-        if spread > best_spread * _WORTH + 1e-6:
-            best, best_spread = angle, spread
-    return best
+def _spread(tracks):
+    """How far all points of some tracks are spread, over all frames (3 × 3, m²)."""
+    centres = numpy.array([centre for track in tracks for centre in track.centres if centre is not None])
+    shapes = [shape for track in tracks for shape in track.covariances if shape is not None]
+    return numpy.cov(centres, rowvar=False, bias=True) + numpy.mean(shapes, axis=0)
+
+
+def _best_angle(spread):
+    """The first angle that shows enough: a wide silhouette, and much of the way that is covered."""
+    shown = {angle: _shown(spread, angle) for angle in _ANGLES}
+    return next(angle for angle in _ANGLES if shown[angle] >= _ENOUGH * max(shown.values()))
+
+
+def _shown(spread, angle):
+    """How much of what is spread so is seen from an angle, in metres: the mean of the length and the area of it."""
+    flat = numpy.array(_axes(angle)[:2])
+    seen = flat @ spread @ flat.T
+    length, area = (math.sqrt(max(0.0, float(part))) for part in (numpy.trace(seen), numpy.linalg.det(seen)))
+    return math.sqrt(length * math.sqrt(area))
 
 
 def _fit(angle, boxes):

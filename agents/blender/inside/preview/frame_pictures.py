@@ -6,19 +6,27 @@ from mathutils import Matrix
 
 from .framing import BoundingBox
 from .material_colours import PreviewMaterial
+from .proxy_meshes import octahedra
 from .scene_copy import SceneCopy
 from .studio_scene import REACH, StudioScene, drawing_engine
 
 _PALE = 0.62  # how much the surroundings are whitened
 _SLACK = 0.5  # of a view's width: what is this far in front of the actor is shown, unless it hides it
+_SPARED, _MARGIN = (
+    0.1,
+    0.02,
+)  # of an actor's depth, and of a view's width: stays in front of some of its points
 _PASSED = 8  # own surfaces that a ray passes
+_MARK = PreviewMaterial((0.9, 0.2, 0.02), 1)
+_MARK_RADIUS = 1.8  # pixels
 
 
 class PictureJob:
-    """A picture to render: ``objects`` (names) stand out in it; ``points`` are some of theirs."""
+    """A picture to render: ``objects`` (names) stand out in it; ``points`` are some of theirs. Places that are
+    ``marks`` get a dot, as large from afar as close by."""
 
-    def __init__(self, objects, points, view, path):
-        self.objects, self.points, self.view, self.path = objects, points, view, path
+    def __init__(self, objects, points, view, path, marks=()):
+        self.objects, self.points, self.view, self.path, self.marks = objects, points, view, path, marks
 
 
 class FramePictures:
@@ -49,7 +57,10 @@ class FramePictures:
             for job in jobs:
                 _highlight(studio, placed, job.objects)
                 _aim_camera(studio, camera, job.view, self._near_plane(graph, job))
+                dots = _add_dots(studio, job)
                 studio.render(camera, job.view.size, job.path)
+                if dots is not None:
+                    dots.hide_render = True
                 yield
 
     def _near_plane(self, graph, job):
@@ -57,7 +68,11 @@ class FramePictures:
         view = job.view
         before = view.depth + _SLACK * view.width
         hidden = sum(self._is_hidden(graph, job, point, before) for point in job.points)
-        return view.depth if hidden > len(job.points) / 2 else before
+        if hidden <= len(job.points) / 2:
+            return before
+        # On a way towards the viewer, what hides it at its farthest may be behind it at its nearest.
+        depths = [(point - view.centre).dot(view.axes[2]) for point in job.points]
+        return min(view.depth, max(depths) + _SPARED * (max(depths) - min(depths)) + _MARGIN * view.width)
 
     def _is_hidden(self, graph, job, point, before):
         """Whether another object hides a point."""
@@ -73,6 +88,16 @@ class FramePictures:
                 return hit
             point = place
         return False
+
+
+def _add_dots(studio, job):
+    """An object with the dots of a job; None without any."""
+    radius = _MARK_RADIUS * job.view.width / job.view.size[0]
+    mesh = octahedra([(place, radius) for place in job.marks])
+    if mesh is None:
+        return None
+    studio.owned(mesh).materials.append(studio.material(_MARK))
+    return studio.add(mesh, Matrix())
 
 
 def _highlight(studio, placed, names):

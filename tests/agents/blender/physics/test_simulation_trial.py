@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import io
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pytest
+from PIL import Image
 from test_bake import PARTS, one
 from test_stepped_once import CLOTH_ON_BALL, broken
 
@@ -120,6 +123,22 @@ def test_a_swarm_is_told_by_how_many_there_are_where_and_which_way(session: Live
     assert f"frame 9: {last['alive']} alive, mean place (" in found.text
     assert cloud["heights"] == []
     assert found.data["fallen"] == []
+
+
+def test_a_swarm_has_a_strip_of_pictures_of_its_own(session: LiveSession) -> None:
+    session.run(RAIN.format(start=1, partner=COLLIDES) + "bpy.context.view_layer.update()")
+    alone = session.use(TOOL, frames=4)
+    session.run(
+        "bpy.ops.mesh.primitive_cube_add(size=0.2, location=(30, 0, 5))\nbpy.ops.rigidbody.object_add()"
+    )
+    both = session.use(TOOL, frames=4)
+    heights = [Image.open(io.BytesIO(found.pictures[0].png)).height for found in (alone, both)]
+    assert [len(found.pictures) for found in (alone, both)] == [1, 1]
+    assert heights[1] != heights[0]
+    picture = np.asarray(Image.open(io.BytesIO(both.pictures[0].png)).convert("RGB")).astype(int)
+    orange = (picture[..., 0] > 150) & (picture[..., 1] < 130) & (picture[..., 2] < 80)
+    rows = np.nonzero(orange.any(axis=1))[0]
+    assert rows.min() > heights[1] / 2, "the swarm is in the strip below"
 
 
 @pytest.mark.parametrize(

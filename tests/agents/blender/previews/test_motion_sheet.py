@@ -166,6 +166,50 @@ def test_keyframed_motion_has_its_exact_speeds(session: LiveSession) -> None:
     assert "stepped_from" not in found.data
 
 
+def test_a_flat_thing_is_seen_from_its_wide_side_however_it_is_turned(session: LiveSession) -> None:
+    """A wall that is pushed a little along its normal: from where its way is seen best, it is a line."""
+    seen: list[int] = []
+    for turn in (0, 30, 60, 90, 120, 150):
+        session.empty()
+        session.run(
+            f"import math\nturn = math.radians({turn})\ns = bpy.context.scene\ns.frame_end = 12\n"
+            "bpy.ops.mesh.primitive_cube_add(size=1)\no = bpy.context.object\n"
+            "o.name, o.scale, o.rotation_euler.z = 'Wall', (2, 0.01, 1.2), turn\n"
+            f"{RED}\no.keyframe_insert('location', frame=1)\n"
+            "o.location = (-0.1 * math.sin(turn), 0.1 * math.cos(turn), 0)\n"
+            "o.keyframe_insert('location', frame=12)"
+        )
+        found = session.use(TOOL, actors=["Wall"], frames=[1, 12])
+        picture = np.asarray(Image.open(io.BytesIO(found.pictures[0].png)).convert("RGB")).astype(int)
+        strip = picture[136:336, 12:-12]
+        seen.append(int(((strip[..., 0] > 100) & (strip[..., 1] < 80) & (strip[..., 2] < 80)).sum()))
+    assert min(seen) > max(seen) / 2, seen
+
+
+def test_particles_that_are_far_smaller_than_a_pixel_are_seen_and_a_lost_one_does_not_make_them_a_point(
+    session: LiveSession,
+) -> None:
+    session.run(
+        "s = bpy.context.scene\ns.frame_end = 24\ns.gravity = (0, 0, 0)\n"
+        "bpy.ops.mesh.primitive_plane_add(size=4)\nbpy.context.object.name = 'Cloud'\n"
+        "dust = bpy.context.object.modifiers.new('Dust', 'PARTICLE_SYSTEM').particle_system.settings\n"
+        "dust.count, dust.frame_end, dust.normal_factor, dust.particle_size = 300, 1, 0.2, 0.001\n"
+        "bpy.ops.mesh.primitive_plane_add(size=0.1, location=(0, 0, 0))\nbpy.context.object.parent = None\n"
+        "lost = bpy.context.object\nlost.name = 'Shot'\n"
+        "shot = lost.modifiers.new('Shot', 'PARTICLE_SYSTEM').particle_system.settings\n"
+        "shot.count, shot.frame_end, shot.normal_factor = 3, 1, 200\n"
+        "whole = bpy.data.collections.new('Whole')\ns.collection.children.link(whole)\n"
+        "for part in (lost, bpy.data.objects['Cloud']):\n    whole.objects.link(part)"
+    )
+    found = session.use(TOOL, actors=["Whole"], frames=[6, 24])
+    picture = np.asarray(Image.open(io.BytesIO(found.pictures[0].png)).convert("RGB")).astype(int)
+    strip = picture[136:336, 12:620]
+    orange = (strip[..., 0] > 150) & (strip[..., 1] < 130) & (strip[..., 2] < 80)
+    columns = np.nonzero(orange.any(axis=0))[0]
+    assert orange.sum() > 300, "the particles are not seen"
+    assert columns.max() - columns.min() > 100, "most particles are in one place of the picture"
+
+
 def test_many_vertices_in_one_place_weigh_no_more_than_their_surface(session: LiveSession) -> None:
     """A door's leaf, whose hinge has more vertices than all the rest."""
     session.run(
