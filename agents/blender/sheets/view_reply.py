@@ -93,12 +93,22 @@ class LitObject(Claim):
     bare: list[Name] = Field(max_length=20)
 
 
+class LitPatch(Claim):
+    """A close picture of a part of an object. ``file`` and ``key`` are as in ``LitView``."""
+
+    name: Name
+    file: _File | None
+    key: Key | None
+    metres_per_pixel: Scale
+
+
 class MaterialReply(Claim):
     """Stills in neutral light."""
 
     title: Name
     scene: list[LitView] = Field(max_length=4)
     objects: list[LitObject] = Field(max_length=12)
+    patches: list[LitPatch] = Field(max_length=3)
     notes: list[Note] = Field(max_length=_MOST_NOTES)
 
 

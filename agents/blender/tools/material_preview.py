@@ -10,7 +10,7 @@ from pydantic.json_schema import SkipJsonSchema
 
 from agents.blender.render.kept_pictures import KeptPictures
 from agents.blender.sheets import contact_sheet
-from agents.blender.sheets.view_reply import LitObject, MaterialReply
+from agents.blender.sheets.view_reply import LitObject, LitPatch, MaterialReply
 from agents.blender.sheets.worker_pictures import taken_picture
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
 from agents.blender.tools.preview_files import FOLDER, new_preview
@@ -63,8 +63,8 @@ class MaterialArguments(Arguments):
 
 DESCRIPTION = """\
 See materials as they render (Cycles, the file's shaders and textures) in neutral light, without lamps. \
-Shows the scene through its camera, or in three-quarter view, and each object alone: up to a minute \
-a picture."""
+Shows the scene through its camera, or in three-quarter view, and each object alone, one that is far larger than \
+others close up too: up to a minute a picture."""
 
 
 def run(context: ToolContext, arguments: MaterialArguments, call: Call) -> Result:
@@ -102,14 +102,15 @@ def run(context: ToolContext, arguments: MaterialArguments, call: Call) -> Resul
     ]
     data["frames"] = [view.frame for view in shown.scene]
     data["files"] = [str(image.path.relative_to(folder.root)) for image in images]
-    stills = (*shown.scene, *shown.objects)
+    data["patches"] = [patch.name for patch in shown.patches]
+    stills = (*shown.scene, *shown.objects, *shown.patches)
     data["kept"] = sum(still.file is None for still in stills)
     data["rendered"] = len(stills) - data["kept"]
     data["seconds"] = round(reply.seconds, 2)
     return Result(_text(shown, data), data, tuple(images))
 
 
-def _picture(blender: Supervisor, kept: KeptPictures, still: LitView | LitObject) -> Image.Image:
+def _picture(blender: Supervisor, kept: KeptPictures, still: LitView | LitObject | LitPatch) -> Image.Image:
     """The picture of a still that was rendered now, or kept as it would be."""
     if still.file is not None:
         picture = taken_picture(blender, still.file, _BACKGROUND)
@@ -132,6 +133,10 @@ def _sheet(blender: Supervisor, kept: KeptPictures, shown: MaterialReply) -> Ima
         picture = _picture(blender, kept, one)
         contact_sheet.draw_scale_bar(picture, one.metres_per_pixel)
         panels.append(contact_sheet.Panel(picture, one.name, format_list(one.materials, 2) or "no material"))
+    for patch in shown.patches:
+        picture = _picture(blender, kept, patch)
+        contact_sheet.draw_scale_bar(picture, patch.metres_per_pixel)
+        panels.append(contact_sheet.Panel(picture, patch.name, "close up"))
     return contact_sheet.sheet(
         "Materials",
         [contact_sheet.grid(panels, min(_COLUMNS, len(panels)))],
@@ -150,6 +155,7 @@ def _text(shown: MaterialReply, data: dict[str, Any]) -> str:
     lines = ["In neutral light, not the scene's:"]
     lines += [f"- frame {view.frame}, {_seen_by(view)}" for view in shown.scene]
     lines += [_line(one) for one in shown.objects]
+    lines += [f"- close up: {', '.join(patch.name for patch in shown.patches)}"] if shown.patches else []
     lines += [f"- {note}" for note in shown.notes]
     lines += (
         [f"Rendered: {counted(data['rendered'], 'still')} in {data['seconds']:.0f} s."]

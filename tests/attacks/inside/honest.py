@@ -95,7 +95,13 @@ def on_material_sheet(arguments):
     shown = {**view(arguments["folder"], 0, "three-quarter"), "frame": 1, "key": "0" * 32}
     alone = {"name": "Cube", "file": view(arguments["folder"], 1, "x")["file"], "metres_per_pixel": 0.1}
     alone |= {"key": None, "materials": ["Clay"], "alike": ["Box"], "alike_in_all": 1, "bare": []}
-    return {"title": "Scene", "scene": [shown], "objects": [alone], "notes": ["a note"]}
+    patch = {
+        "name": "Cube",
+        "file": view(arguments["folder"], 2, "x")["file"],
+        "metres_per_pixel": 0.01,
+        "key": None,
+    }
+    return {"title": "Scene", "scene": [shown], "objects": [alone], "patches": [patch], "notes": ["a note"]}
 
 
 def on_uv_sheet(arguments):

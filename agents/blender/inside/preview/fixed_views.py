@@ -270,7 +270,7 @@ class PreviewRenderer:
         placed = [(piece, studio.add(piece.data, piece.matrix)) for piece in large]
         self._owners = {obj: piece.owner for piece, obj in placed}
         self._placed = list(placed)
-        self._room = find_room(studio, placed, _grouped(bpy.context.scene, boxes).values())
+        self._room = find_room(studio, placed, grouped_boxes(bpy.context.scene, boxes).values())
         self._opening = RoomCutaway(studio, self._room)
         if self._opening.fault:
             notes.append(f"Rooms are shown with all their walls: {self._opening.fault}.")
@@ -373,29 +373,51 @@ class PreviewRenderer:
     def _aim(self, outline, rotation, margin):
         """Turns the camera to points of the world; returns the middle of its picture and the width, in metres."""
         middle, across = fit(outline, rotation, margin)
+        self._point(rotation, middle, across)
+        return middle, across
+
+    def _point(self, rotation, middle, across):
+        """Turns the camera to a place of the world; its picture is so many metres wide."""
         matrix = rotation.to_4x4()
         matrix.translation = (
             self._studio.placed(Matrix.Translation(middle)).translation + rotation.col[2] * self.away
         )
         self._camera.matrix_world = matrix
         self._camera.data.ortho_scale = across * self._studio.scale
-        return middle, across
 
     def alone(self, owners, towards, side):
         """The picture, ``side`` pixels wide, of some objects (names) without all others: (file, metres a pixel)."""
-        mine = [(piece, obj) for piece, obj in self._placed if piece.owner in owners]
-        others = [obj for piece, obj in self._placed if piece.owner not in owners and not obj.hide_render]
+        mine = [piece for piece, _ in self._placed if piece.owner in owners]
         most = max(8, _OUTLINE // max(1, len(mine)))
-        rotation = camera_rotation(towards, (0, 0, 1))
-        outline = [place for piece, _ in mine for place in piece.outline(most)]
-        _, across = self._aim(outline, rotation, CLOSE)
+        outline = [place for piece in mine for place in piece.outline(most)]
+        _, across = self._aim(outline, camera_rotation(towards, (0, 0, 1)), CLOSE)
+        return self._render_only(owners, side), across / side
+
+    def patch(self, owners, towards, side, near, across):
+        """The picture of some objects as ``alone``, of so many metres of them, nearest to a place."""
+        self._point(camera_rotation(towards, (0, 0, 1)), self._nearest(owners, near), across)
+        return self._render_only(owners, side), across / side
+
+    def _render_only(self, owners, side):
+        others = [obj for piece, obj in self._placed if piece.owner not in owners and not obj.hide_render]
         for obj in others:
             obj.hide_render = True
         try:
-            return self._render(self._camera, (side, side), 1.0), across / side
+            return self._render(self._camera, (side, side), 1.0)
         finally:
             for obj in others:
                 obj.hide_render = False
+
+    def _nearest(self, owners, near):
+        """The point of the surface of some objects that is nearest to a place of the world."""
+        graph = self._studio.update()
+        points = []
+        for piece, obj in self._placed:
+            if piece.owner in owners and getattr(piece.data, "polygons", ()):
+                origin = piece.matrix.inverted_safe() @ near
+                found, point, *_ = obj.closest_point_on_mesh(origin, depsgraph=graph)
+                points += [piece.matrix @ point] if found else []
+        return min(points, key=lambda point: (point - near).length, default=near)
 
     def _label_pixels(self, rotation, middle, across):
         """[name, x, y] of what is labelled, in pixels from the upper left."""
@@ -437,8 +459,8 @@ def studio_camera(studio, camera):
     return obj
 
 
-def _grouped(scene, boxes):
-    """The boxes of the protocol's objects, and of those of Blender's that belong to none."""
+def grouped_boxes(scene, boxes):
+    """The boxes of the protocol's objects, and of those of Blender's that belong to none, by name."""
     groups, members = {}, set()
     for collection in object_collections(scene):
         own = {obj.name for obj in collection.all_objects} & boxes.keys()
@@ -452,7 +474,7 @@ def _labels(scene, boxes, whole, first):
     """The centres of the largest objects of the protocol (lacking those, of Blender's), those that fill the picture
     left out."""
     tagged = {collection.name for collection in object_collections(scene)}
-    groups = _grouped(scene, boxes)
+    groups = grouped_boxes(scene, boxes)
     small = {
         name: box
         for name, box in groups.items()

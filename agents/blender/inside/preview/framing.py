@@ -17,6 +17,8 @@ CLOSE, LOOSE, WIDE = 1.06, 1.25, 1.7  # size of the picture in sizes of what is 
 _FOOT = 0.09  # of the picture's height: kept free for the scale bar
 _GROUND_TIMES, _SKY_TIMES, _FAR_TIMES = 1.7, 8.0, 6.0  # against what is framed
 _FLAT = 0.05
+_VAST_TIMES = 6.0  # against the middle one of all others: of what is larger, a whole picture shows no surface
+_PATCH, _LEAST_PATCH = 0.5, 0.02  # width of a patch, in diagonals of that other one, and in its own
 _UPRIGHT = 0.3  # how much of an axis is level, below which it says nothing of the turn
 _TURNED = 0.01  # radians
 
@@ -103,6 +105,20 @@ def choose_framed(boxes, templates=()):
                 continue
         core = box if core is None else BoundingBox.around((core, box))
     return sorted(boxes.keys() - {*outside, *beyond}), sorted(beyond), outside
+
+
+def patch_of(box, others):
+    """(place near which to look, width in metres) of a close picture of what is far larger than all ``others``.
+
+    None for what is not, or if there are no others.
+    """
+    if not others:
+        return None
+    usual = statistics.median_low(other.diagonal for other in others)
+    if box.diagonal <= _VAST_TIMES * usual:
+        return None
+    middle = Vector(statistics.median(other.centre[axis] for other in others) for axis in range(3))
+    return middle, max(_PATCH * usual, _LEAST_PATCH * box.diagonal)
 
 
 def _templates_aside(boxes, templates):

@@ -12,8 +12,8 @@ from ..blend.named_objects import objects_named
 from ..blend.names import quoted
 from ..blend.protocol_tags import object_collections
 from ..state.still_digest import digest_of, lasting_digest
-from .fixed_views import SCENE, PreviewRenderer, at_frame, copy_of, note_missing
-from .framing import VIEWS
+from .fixed_views import SCENE, PreviewRenderer, at_frame, copy_of, grouped_boxes, note_missing
+from .framing import VIEWS, BoundingBox, boxes_of, patch_of
 from .lit_studio import LitStudio
 from .scene_copy import DRAWABLE
 
@@ -22,7 +22,7 @@ OBJECTS = "objects"
 _WIDEST = 960  # pixels of the scene's picture, where no size is asked for
 _NARROWEST = 64
 _ALONE = ("file", "metres_per_pixel")
-_MOST_OBJECTS = 12
+_MOST_OBJECTS, _MOST_PATCHES = 12, 3
 _NAMED = 6
 _LISTED = 20
 _MOST_MADE = 200
@@ -35,8 +35,9 @@ def material_sheet(arguments, report):
     ``objects``: names of the protocol's objects (lacking those, of Blender's); none: all, alike ones once, those that
     ``first`` names before others, and under ``only_first`` no others: see ``_asked_groups``. ``show``:
     "all", "scene" or "objects". ``size``: (of the scene's picture, None: the scene's own; of an object's), in pixels.
-    After ``seconds`` no further still is begun. ``kept``: keys of stills that the caller still has. Returns ``scene``
-    and ``objects``, with the names of the files and the keys, and ``notes``; what is kept and unchanged has no file.
+    After ``seconds`` no further still is begun. ``kept``: keys of stills that the caller still has. Returns ``scene``,
+    ``objects`` and ``patches`` (close pictures of those that are far larger than all others), with the names of the
+    files and the keys, and ``notes``; what is kept and unchanged has no file.
     """
     scene = bpy.context.scene
     frames = arguments["frames"] or [scene.frame_current]
@@ -48,12 +49,13 @@ def material_sheet(arguments, report):
         "title": scene.name,
         "scene": sheet.scene,
         "objects": sheet.objects,
+        "patches": sheet.patches,
         "notes": list(dict.fromkeys(sheet.notes)),
     }
 
 
 class _Sheet:
-    """Collects the stills of a call: ``scene`` and ``objects``, as the caller gets them, and ``notes``."""
+    """Collects the stills of a call: ``scene``, ``objects``, ``patches``, as the caller gets them, and ``notes``."""
 
     def __init__(self, arguments, report, total):
         self._arguments, self._report, self._total = arguments, report, total
@@ -61,7 +63,7 @@ class _Sheet:
         self._files = self._done = 0
         self._took = []  # seconds of each still that was rendered
         self._digest = None  # of the scene at its frame
-        self.scene, self.objects, self.notes = [], [], []
+        self.scene, self.objects, self.patches, self.notes = [], [], [], []
 
     def take(self, scene, frame, groups):
         """The still of the scene at a frame, and those of ``groups`` (names of objects, by title)."""
@@ -87,13 +89,16 @@ class _Sheet:
                 # From outside, materials are seen best on the objects: these come first while there is time.
                 present = _present(groups, subject, self.notes)
                 alike = _alike(present, self._arguments["first"], as_given=bool(self._arguments["objects"]))
-                self._total += min(len(alike), _MOST_OBJECTS)
+                vast = _vast(scene, subject, present, alike)
+                self._total += min(len(alike), _MOST_OBJECTS) + len(vast)
                 if camera is None:
                     self._take_objects(renderer, present, alike, side)
+                    self._take_patches(renderer, present, vast, side)
                 if self._arguments["show"] != OBJECTS:
                     self._take_scene(scene, renderer, camera, width)
                 if camera is not None:
                     self._take_objects(renderer, present, alike, side)
+                    self._take_patches(renderer, present, vast, side)
             self._files = renderer.files
             if frame == self.scene[0]["frame"] if self.scene else True:
                 note_missing(subject, self.notes)
@@ -145,6 +150,20 @@ class _Sheet:
                 f"Not shown alone, since the {spent}: {quoted(late, _NAMED)}. Call again with "
                 "show='objects' and these names."
             )
+
+    def _take_patches(self, renderer, groups, vast, side):
+        shown = {one["name"] for one in self.objects}
+        for name, patch in vast.items():
+            if name in shown and not self._is_late:
+                self._say(f"{name}, close up")
+                owners = groups[name]
+                still = self._still(
+                    (sorted(owners), side, "patch"),
+                    lambda owners=owners, patch=patch: dict(
+                        zip(_ALONE, renderer.patch(owners, _THREE_QUARTER[1], side, *patch), strict=True)
+                    ),
+                )
+                self.patches.append({**still, "name": name})
 
     @property
     def _is_late(self):
@@ -254,6 +273,19 @@ def _alike(groups, wanted, *, as_given):
     return {
         name: alike[name] for name in sorted(alike, key=lambda name: (rank.get(name, last), not new[name]))
     }
+
+
+def _vast(scene, subject, groups, names):
+    """{name: where and how wide a close picture is to be} of those that are far larger than the scene's others."""
+    boxes = boxes_of(subject.pieces)
+    every = grouped_boxes(scene, boxes)
+    vast = {}
+    for name in names:
+        others = [box for title, box in every.items() if title != name and title not in groups[name]]
+        box = BoundingBox.around(boxes[owner] for owner in groups[name])
+        if patch := patch_of(box, others):
+            vast[name] = patch
+    return dict(list(vast.items())[:_MOST_PATCHES])
 
 
 def _acts(name):

@@ -109,6 +109,33 @@ def test_shows_the_scene_at_frames_through_its_camera(session: LiveSession) -> N
     assert session.run("bpy.context.scene.frame_current") == 1
 
 
+# Beside a chest of 1 m a floor of 80 m, whose squares of 5 cm are grey from where all of it is seen.
+VAST_FLOOR = CLOSED_ROOM.split("box('Shell'", maxsplit=1)[0].replace("= 2\n", "= 20\n") + (
+    "box('Floor', (0, 0, -.5), (80, 80, 1)).data.materials.append(material)\n"
+    "for name in ('Chest 0', 'Chest 1', 'Chest 2', 'Floor'):\n"
+    "    collection(f'The {name}', 'object', bpy.data.objects[name])\n"
+)
+
+
+def test_what_is_far_larger_than_all_others_is_shown_close_up_as_well(
+    session: LiveSession, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(material_preview, "_PANEL", 96)
+    build(session, VAST_FLOOR)
+    found = session.use(material_preview.TOOL, show="objects", objects=["The Floor"])
+    assert found.data["patches"] == ["The Floor"]
+    assert found.data["rendered"] == 2
+    assert "- close up: The Floor" in found.text
+    (sheet,) = pictures(found)
+    panels = [sheet.crop((left, 60, left + 98, sheet.height)) for left in (12, 12 + 98 + 8)]
+    whole, close = (min(share(panel, "R"), share(panel, "B")) for panel in panels)
+    assert close > 0.1
+    assert close > 2 * whole
+    again = session.use(material_preview.TOOL, show="objects", objects=["The Floor"])
+    assert (again.data["rendered"], again.data["kept"]) == (0, 2)
+    assert session.use(material_preview.TOOL, show="objects", objects=["The Chest 0"]).data["patches"] == []
+
+
 @pytest.mark.whole
 def test_objects_come_as_they_were_named(session: LiveSession) -> None:
     build(session, CLOSED_ROOM)
