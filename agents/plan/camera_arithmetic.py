@@ -1,13 +1,19 @@
-"""Whether the planned camera sees its subjects at the first frame, by their boxes; one that moves starts there."""
+"""Whether the planned camera sees its subjects at the first frame, by their boxes; one that moves starts there.
+
+How much of the picture they cover is what the verifier measures, the convex outline: as of the whole box, or of the
+ball. Whatever is built in that place covers no more.
+"""
 
 from __future__ import annotations
 
 import itertools
 import math
+import re
 from typing import TYPE_CHECKING
 
 from agents.plan.boxes import box_of, boxes_of
 from agents.plan.faults import Fault
+from agents.plan.outlines import covered_share
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,6 +29,10 @@ _OUTSIDE = (
 _COVER = 0.01  # share of the picture that a subject must fill
 _GROWING = frozenset({"fluid", "emitter"})  # at first there may be nothing of them
 _SHARES = (0.1, 0.5, 0.9)
+# A name that ends so is of something round: "Ball", "Wrecking_Ball_02", "Football"; not "Ball_Stand".
+_BALL = re.compile(r"(?:ball|sphere|globe|marble|bead)[\W\d_]*$", re.IGNORECASE)
+_EQUAL = 0.05  # by how much, in parts, the sizes of what is round may differ
+_AROUND = 32  # points of a ball's outline
 
 
 def camera_axes(plan: ScenePlan) -> tuple[Vector, Vector, Vector] | None:
@@ -50,12 +60,12 @@ def camera_doubts(plan: ScenePlan, boxes: dict[str, PlannedBox]) -> Iterator[Fau
         box = boxes.get(subject)
         if box is None or box.planned.role in _GROWING:
             continue
-        seen, corners = (
+        seen, outline = (
             [
                 (across * scale * aspect[0] / ahead, up * scale * aspect[1] / ahead) if ahead > 1e-6 else None
                 for across, up, ahead in (_in_view(basis, camera.position, point) for point in points)
             ]
-            for points in (_samples(box), box.corners)
+            for points in (_samples(box), _outline(box))
         )
         outside = sum(point is None or max(map(abs, point)) > 1 for point in seen) / len(seen)
         path = f"camera.subjects[{place}]"
@@ -66,12 +76,10 @@ def camera_doubts(plan: ScenePlan, boxes: dict[str, PlannedBox]) -> Iterator[Fau
                 "move the camera back, turn it, or use a shorter lens.",
             )
             continue
-        flat = [point for point in corners if point is not None]
-        sides = [
-            min(1.0, max(point[axis] for point in flat)) - max(-1.0, min(point[axis] for point in flat))
-            for axis in (0, 1)
-        ]
-        if (cover := sides[0] * sides[1] / 4) < _COVER:
+        flat = [point for point in outline if point is not None]
+        if len(flat) < len(outline):  # it reaches behind the camera, so it is near
+            continue
+        if (cover := covered_share(flat)) < _COVER:
             yield Fault(
                 path,
                 f"{subject!r} fills at most {cover:.2%} of the picture's area; at least {_COVER:.0%} is needed: move "
@@ -109,6 +117,21 @@ def _in_view(basis: tuple[Vector, Vector, Vector], eye: Vector, point: Vector) -
     away = [end - start for start, end in zip(eye, point, strict=True)]
     x, y, z = (sum(part * step for part, step in zip(axis, away, strict=True)) for axis in basis)
     return (x, y, z)
+
+
+def _outline(box: PlannedBox) -> list[Vector]:
+    """Points whose convex outline holds the object: the corners of its box; of a ball, points around it."""
+    sizes = box.planned.dimensions
+    if not _BALL.search(box.name) or max(sizes) > (1 + _EQUAL) * min(sizes):
+        return list(box.corners)
+    radius = max(sizes) / 2 / math.cos(math.pi / _AROUND)
+    points: list[Vector] = []
+    for ring, place in itertools.product(range(_AROUND // 2 + 1), range(_AROUND)):
+        tilt, turn = 2 * math.pi * ring / _AROUND, 2 * math.pi * place / _AROUND
+        x, y, z = box.centre
+        level = radius * math.sin(tilt)
+        points.append((x + level * math.cos(turn), y + level * math.sin(turn), z + radius * math.cos(tilt)))
+    return points
 
 
 def _samples(box: PlannedBox) -> list[Vector]:

@@ -120,6 +120,23 @@ def test_nothing_speaks_against_a_sound_plan() -> None:
             "camera.subjects[0]",
             "fills at most",
         ),
+        # A ball, and what is turned: their boxes along the picture's sides would fill enough.
+        (
+            {"camera__subjects": ["Ball"], "camera__target": "Ball", "camera__position": (1.5, -1, 1.55)},
+            "camera.subjects[0]",
+            "fills at most 0.7",
+        ),
+        (
+            {
+                "camera__subjects": ["Picture"],
+                "camera__position": (0, -4, 1.5),
+                "camera__target": "Picture",
+                "Picture__dimensions": (0.9, 0.03, 0.05),
+                "Picture__rotation": (0, 45, 0),
+            },
+            "camera.subjects[0]",
+            "fills at most 0.",
+        ),
     ],
 )
 def test_a_number_that_contradicts_the_plan_is_told(changes: dict[str, Any], path: str, why: str) -> None:
@@ -137,6 +154,7 @@ def test_a_number_that_contradicts_the_plan_is_told(changes: dict[str, Any], pat
         {"Floor__position": (0, 0, -0.1)},
         {"Crate__position": (1.5, 0, 1.3), "Crate__role": "container"},
         {"Crate__position": (1.5, 0.2, 1.3), "Crate__rotation": (0, 0, 45)},
+        {"camera__subjects": ["Apple"], "camera__target": "Apple", "camera__position": (-0.3, -0.8, 0.8)},
     ],
 )
 def test_what_may_be_right_all_the_same_is_not_told(changes: dict[str, Any]) -> None:
