@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, cast
 
 from agents.blender.tools.scene_fold import series
-from agents.blender.tools.scene_words import joined, pairs, settings, span, titled, value
+from agents.blender.tools.scene_words import joined, pairs, row, settings, span, titled, value
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -116,8 +116,12 @@ def animation(entry: Entry) -> str:
     head = f"- {titled(entry)}" + (f" ({entry['of']})" if "of" in entry else "")
     head += "".join(f", {value(count)} {key}" for key, count in entry.get("counts", {}).items())
     lines: list[str] = []
+    points = entry.get("points", {}) if "count" not in entry else {}
     for key, write in _WRITERS.items():
-        lines += [f"  {write(item)}" for item in entry.get(key, ())]
+        items = entry.get(key, ())
+        if key == "channels":
+            items = [{**item, "points": points.get(item.get("path"))} for item in items]
+        lines += [f"  {write(item)}" for item in items]
         if left := entry.get(f"{key}_left_out"):
             lines.append(f'  … {value(left)} more {key}: detail="full"')
     if "unlisted" in entry:
@@ -137,9 +141,11 @@ def animation(entry: Entry) -> str:
 def _channel(entry: Entry) -> str:
     axes = f"[{','.join(value(axis) for axis in entry['axes'])}]" if "axes" in entry else ""
     parts = [f"{_path(entry)}{axes}: {value(entry['keys'])} keys"]
-    if "frames" in entry:
+    if (points := entry["points"]) and "count" not in entry:
+        parts.append(f"at frame {'; '.join(f'{value(frame)}: {row(values)}' for frame, *values in points)}")
+    elif "frames" in entry:
         parts.append(f"frames {span(entry['frames'])}")
-    if values := entry.get("values"):
+    if not points and (values := entry.get("values")):
         spans = [values] if not isinstance(values[0], list) else values
         parts.append(f"values {', '.join(_from_to(ends) for ends in spans)}")
     if entry.get("every_frame"):

@@ -28,6 +28,7 @@ _OPTIONAL: Final[dict[str, Any]] = {
     "shares": None,
     "data": None,
     "names": None,
+    "points": None,
 }
 
 

@@ -22,11 +22,12 @@ for engine in {engines}:
         pass
 render.resolution_x, render.resolution_y = {width}, {height}
 render.resolution_percentage = 100
+render.filepath = "//renders/"  # beside the file, wherever that is
 """
 
 
 def code_of(planned: RenderSettings, samples: int) -> str:
-    """Code that gives the open scene the engine, size and ``samples`` of its plan."""
+    """Code that gives the open scene the engine, size and ``samples`` of its plan, and a place for its pictures."""
     width, height = planned.resolution
     engines = _ENGINES.get(planned.engine, (planned.engine,))
     code = _CODE.format(engines=engines, width=width, height=height)

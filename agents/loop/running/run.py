@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -148,6 +149,9 @@ class Run:
         target = self.files.scene
         made = self.files.of_blender / "delivered" / stage / target.name
         self._save(stage, f"delivered/{stage}/{target.stem}", target, made, verify=verify)
+        for emptied in (made.parent, made.parent.parent):
+            with suppress(OSError):  # not there, or something was left behind in it
+                emptied.rmdir()
 
     def _save(  # noqa: PLR0913 - what is saved, from where to where
         self,

@@ -44,3 +44,5 @@ def test_a_run_delivers_its_scene_with_them(mended: Played, tmp_path: Path) -> N
     with session.blender:
         session.use(LOAD, path=str(mended.root / "scene.blend"))
         assert session.run(_SIZE) == (64, 36, 100), "the coder has left 50 per cent"
+        assert session.run("bpy.context.scene.render.filepath") == "//renders/"
+    assert not (mended.root / "blender" / "delivered").exists()

@@ -41,6 +41,8 @@ _KINDS = {
     "linestyles": "line style",
 }
 _WITH_NODES = {"materials", "worlds", "lights", "scenes", "linestyles"}
+_FEW_FRAMES = 16  # of a property with keys, up to which each key is told
+_FEW_NUMBERS = 120  # of all keys of an action that are told
 # Kinds of keyframes, by the number that foreach_get gives.
 _INTERPOLATIONS = {}
 
@@ -149,6 +151,8 @@ def _action(animated, keys, detail):
     if ranges:
         entry["range"] = numbers((min(low for low, _ in ranges), max(high for _, high in ranges)))
     entry.update(_listed("channels", groups.items(), lambda item: _channel(*item, keys, detail)))  # pyright: ignore[reportCallIssue]
+    if detail != "summary" and (points := _points(groups)):
+        entry["points"] = points
     if animated.action_influence != 1.0:
         entry["influence"] = number(animated.action_influence)
     return entry
@@ -189,6 +193,25 @@ def _channel(path, curves, keys, detail):
     if detail != "summary":
         entry.update(_interpolation(held))
     return entry
+
+
+def _points(groups):
+    """{path: [[frame, value of each curve], …]} of properties with few keys, at the same frames for each curve."""
+    told, left = {}, _FEW_NUMBERS
+    for path, curves in groups.items():
+        if any(not 0 < len(curve.keyframe_points) <= _FEW_FRAMES for curve in curves):
+            continue
+        if any(_is_keyed_on_every_frame(curve, len(curve.keyframe_points)) for curve in curves):
+            continue
+        places = [[tuple(key.co) for key in curve.keyframe_points] for curve in curves]
+        if len({tuple(frame for frame, _ in keys) for keys in places}) > 1:
+            continue
+        rows = [numbers((keys[0][0], *(value for _, value in keys))) for keys in zip(*places, strict=True)]
+        left -= sum(map(len, rows))
+        if left < 0:
+            break
+        told[text(path)] = rows
+    return told
 
 
 def _is_keyed_on_every_frame(curve, count):

@@ -489,7 +489,23 @@ def test_a_layered_action_tells_its_channels_keys_and_ranges(session: LiveSessio
     ]
     shape = entry(found, "animation", "Mover", of="shape keys", slot="KEKey")
     assert shape["channels"][0]["path"] == 'key_blocks["Tall"].value'
-    assert "location[0,1,2]: 6 keys, frames 1–41, values 0 to 3, 0, -1 to 0" in found.text
+    assert moves["points"] == {"location": [[1, 0, 0, 0], [41, 3, 0, -1]]}
+    assert "location[0,1,2]: 6 keys, at frame 1: 0 0 0; 41: 3 0 -1, interpolation" in found.text
+    assert "scale: 21 keys, frames 10–30, values 1 to 3, a key on every frame" in found.text
+    assert "points" not in entry(read(session, detail="summary"), "animation", "Mover", slot="OBMover")
+
+
+def test_similar_things_are_one_entry_however_many_keys_each_has(session: LiveSession) -> None:
+    found = read(
+        session,
+        "for number in range(8):\n    one = bpy.data.objects.new(f'Lamp.{number:03}', None)\n"
+        "    bpy.context.scene.collection.objects.link(one)\n"
+        "    for key in range(3 + number % 2):\n"
+        "        one.location.x = key\n        one.keyframe_insert('location', index=0, frame=10 * key + 1)\n",
+    )
+    (lamps,) = [one for one in found.data["animation"] if "channels" in one]
+    assert lamps["count"] == 8
+    assert "location: 3…4 keys, frames 1–21…31" in found.text
 
 
 def test_drivers_and_shape_keys_are_told(session: LiveSession) -> None:
