@@ -197,14 +197,17 @@ def resume(run: Path, **given: Any) -> None:
 
 @click.command()
 def runs() -> None:
-    """List the runs, those worked on last first. 'resume', 'show' and 'replay' take the names from any folder."""
+    """List the runs, those worked on last first. 'resume', 'show' and 'replay' take the names from any folder, and the
+    paths of those that were made elsewhere with --run."""
     from agents.blender.launch import runs_folder  # noqa: PLC0415 - not for --help
-    from agents.views.run_list import list_runs  # noqa: PLC0415
+    from agents.views.run_list import list_elsewhere, list_runs  # noqa: PLC0415
     from simworlds.terminal.console import Console  # noqa: PLC0415 - not for --help
 
-    found = list_runs()
-    if found.row_count:
-        Console(sys.stdout).print(found)
+    found, elsewhere = list_runs(), list_elsewhere()
+    for table in (found, elsewhere):
+        if table.row_count:
+            Console(sys.stdout).print(table)
+    if found.row_count or elsewhere.row_count:
         click.echo("To continue one: simworlds resume NAME. To look at one: simworlds show NAME.")
     click.echo(f"{'The runs are' if found.row_count else 'There are no runs'} in {runs_folder()}.")
 
@@ -296,6 +299,7 @@ def _work(
     work: Callable[[RunSession], Ended], root: Path, given: dict[str, Any], *, render: bool = False
 ) -> None:
     from agents.loop.errors import RunError  # noqa: PLC0415 - not for --help
+    from agents.loop.record.elsewhere import remembered  # noqa: PLC0415
     from agents.loop.record.reducer import read_run_state  # noqa: PLC0415
     from agents.loop.session import RunSession, Stop, resume_command  # noqa: PLC0415
     from agents.views.live_view import RunView, make_view  # noqa: PLC0415
@@ -305,7 +309,7 @@ def _work(
     try:
         before = read_run_state(root)
         watched = RunView(before) if given["quiet"] else make_view(sys.stderr, str(root), before)
-        with watched as view, _signals(stop):
+        with remembered(root), watched as view, _signals(stop):
             watcher = ReportWriter(view, root)
             ended = work(RunSession(_limited(given, render=render), watcher, stop))
         report = _write_report(root)

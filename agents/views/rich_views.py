@@ -56,6 +56,7 @@ _MARKS = {
 _OUTCOMES = {"done": "green", "aborted": "red", "failed": "red", "stopped": "yellow", "unfinished": "yellow"}
 _TALL = 22  # lines of a terminal that has room for findings
 _WIDEST = 400  # letters of a line, before the terminal cuts it
+_LONGEST_NAME, _LONGEST_PATH = 60, 4096  # letters of a run's
 _BAR = 20
 _SAID = 110  # letters of what is being said
 
@@ -106,10 +107,16 @@ def run_summary(run_state: RunState, frames: int = 0) -> RenderableType:
     return Group(*parts)
 
 
-def runs_table(runs: Iterable[tuple[str, RunState]]) -> Table:
-    """A row for each run: its name, what it is, how it stands, what it cost, when it was worked on last."""
+def runs_table(runs: Iterable[tuple[str, RunState]], *, by_path: bool = False) -> Table:
+    """A row for each run: its name, what it is, how it stands, what it cost, when it was worked on last.
+
+    ``by_path``: their names are paths, which may be long.
+    """
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    table.add_column("Run", no_wrap=True)
+    if by_path:
+        table.add_column("Run elsewhere", overflow="fold", min_width=13)
+    else:
+        table.add_column("Run", no_wrap=True)
     # The columns that wrap in a narrow terminal, so that names and outcomes stay whole.
     table.add_column("What", min_width=10)
     table.add_column("Outcome", no_wrap=True)
@@ -117,7 +124,7 @@ def runs_table(runs: Iterable[tuple[str, RunState]]) -> Table:
     table.add_column("Cost", justify="right", min_width=8)
     table.add_column("When", no_wrap=True)
     for name, run_state in runs:
-        table.add_row(*run_row(name, run_state))
+        table.add_row(*run_row(name, run_state, longest=_LONGEST_PATH if by_path else _LONGEST_NAME))
     return table
 
 
@@ -129,7 +136,7 @@ def _day(moment: datetime | None) -> str:
     return local.strftime("%H:%M" if local.date() == datetime.now().astimezone().date() else "%Y-%m-%d")
 
 
-def run_row(name: str, run_state: RunState) -> tuple[Text, ...]:
+def run_row(name: str, run_state: RunState, longest: int = _LONGEST_NAME) -> tuple[Text, ...]:
     """The row of ``runs_table``."""
     stage = run_state.current
     if stage:
@@ -145,7 +152,7 @@ def run_row(name: str, run_state: RunState) -> tuple[Text, ...]:
     total = run_state.total
     cost = format_cost(total) if total.calls or total.cost else "recorded" if total.recorded else ""
     return (
-        Text(shortened(name, 60)),
+        Text(shortened(name, longest)),
         Text(shortened(run_state.title, _WIDEST)),
         Text(shortened(run_state.outcome, 20), _OUTCOMES.get(run_state.outcome, "")),
         Text(where),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from agents.blender.launch import runs_folder
 from agents.blender.run_folder import roots
 from agents.loop.errors import NoRun
+from agents.loop.record.elsewhere import runs_elsewhere
 from agents.loop.record.events import RunEnded
 from agents.loop.record.journal import NAME
 from agents.loop.record.reducer import read_run_state
@@ -28,9 +29,14 @@ def new_root(runs: Path) -> Path:
 
 
 def list_runs() -> Table:
-    """All runs that have a journal, newest first; of one that cannot be read, just that."""
+    """All runs of the runs' folder that have a journal, newest first; of one that cannot be read, just that."""
     found = sorted(runs_folder().glob(f"*/{NAME}"), key=lambda path: path.stat().st_mtime, reverse=True)
     return runs_table((path.parent.name, _known_of(path.parent)) for path in found)
+
+
+def list_elsewhere() -> Table:
+    """The runs in other folders, by their paths, newest first."""
+    return runs_table(((str(root), _known_of(root)) for root in runs_elsewhere()), by_path=True)
 
 
 def run_named(name: str) -> Path | None:

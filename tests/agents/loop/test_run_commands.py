@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,9 +16,11 @@ from run_sessions import answered, at_home
 from running import run_here
 from team import ABORT, Team
 
+from agents.loop.record.elsewhere import runs_elsewhere
 from agents.loop.record.journal import NAME
 from simworlds.cli import main
 from simworlds.own_command import own_command
+from simworlds.settings import HOME_VARIABLE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -190,6 +195,50 @@ def test_runs_lists_good_and_broken_runs(mended: Played, base: Path, tmp_path: P
         assert "A crate on a floor" in result.stdout
         assert result.stdout.count("unreadable") == 2
         assert f"The runs are in {tmp_path / 'runs'}." in result.stdout
+
+
+def test_runs_in_folders_of_their_users_choice_are_listed_until_these_are_gone(
+    mended: Played, base: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "kb").symlink_to(base.parent)
+    run = shutil.copytree(mended.root, tmp_path / "my films" / "one")
+    with at_home(tmp_path):
+        assert said("resume", tmp_path / "nothing").exit_code != 0
+        assert said("resume", run).exit_code == 0
+        result = said("runs")
+        assert result.exit_code == 0
+        assert str(run) in result.stdout
+        assert str(tmp_path / "nothing") not in result.stdout
+        narrow = CliRunner().invoke(main, ["runs"], env={"COLUMNS": "80"}).stdout
+        assert re.search(r" done .* (\d{4}-\d\d-\d\d|\d\d:\d\d) *$", narrow, re.MULTILINE)
+        shutil.rmtree(run)
+        assert str(run) not in said("runs").stdout
+        assert list((tmp_path / "runs-elsewhere").iterdir()) == []
+
+
+_REMEMBERS = """
+import sys
+from pathlib import Path
+from agents.loop.record.elsewhere import remembered
+for name in range(20):
+    root = Path(sys.argv[1]) / f"{sys.argv[2]}-{name}"
+    with remembered(root):
+        root.mkdir()
+        (root / "journal.jsonl").touch()
+"""
+
+
+def test_processes_that_begin_runs_at_the_same_time_are_all_listed(tmp_path: Path) -> None:
+    begun = [
+        subprocess.Popen(
+            [sys.executable, "-c", _REMEMBERS, str(tmp_path), str(number)],
+            env={**os.environ, HOME_VARIABLE: str(tmp_path / "home")},
+        )
+        for number in range(6)
+    ]
+    assert [process.wait() for process in begun] == [0] * 6
+    with at_home(tmp_path / "home"):
+        assert {root.name for root in runs_elsewhere()} == {f"{n}-{m}" for n in range(6) for m in range(20)}
 
 
 def test_a_listed_name_is_taken_from_any_folder(
