@@ -18,7 +18,9 @@ FIRST_STAGES: dict[str, Stage] = {
     "R19": "motion",
     "T": "motion",
     "R14": "camera",
+    "W4": "camera",
     "W6": "camera",
+    "W5": "light",
 }
 _LAYOUT_FAMILIES = frozenset("CG")  # they hold only for files that follow the protocol throughout
 

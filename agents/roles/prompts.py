@@ -41,7 +41,7 @@ _ANSWERS: dict[Role, tuple[type[BaseModel], ...]] = {
 }
 # The rules that a stage's own work can break, which its coder is told; all that held before must still hold.
 _TOLD_RULES: dict[Stage, tuple[str, ...]] = {
-    "modeling": ("C", "G", "V", "W1", "W2", "R"),
+    "modeling": ("C", "G", "V", "W1", "W2", "W3", "R"),
     "uv": ("R2",),
     "texture": ("R1",),
     "deformation_setup": ("C3", "V", "W3", "R1", "R4", "R15"),
