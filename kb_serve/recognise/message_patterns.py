@@ -39,7 +39,9 @@ NO_ELEMENT = re.compile(
 OUTDATED = re.compile(r"\boutdated internal index table")  # of a BMesh
 SUBSCRIPTED = re.compile(r"\b([a-z]\w*)\[-?\d+\]")
 BAD_ENUM = re.compile(r"(?P<quote>['\"])(?P<name>[^'\"]*)(?P=quote) not found in \((?P<items>[^)]*)\)?")
-ENUM_VALUE = re.compile(r"\benum (?P<quote>['\"])[^'\"\n]*(?P=quote)(?= not found in )")
+# Without the list of what is taken, as somebody who shortens a message leaves it.
+UNLISTED_ENUM = re.compile(r"\benum (?P<quote>['\"])(?P<name>[^'\"\n]+)(?P=quote) not found(?! in)")
+ENUM_VALUE = re.compile(r"\benum (?P<quote>['\"])[^'\"\n]*(?P=quote)(?= not found)")
 # Of modules written in C, which take texts rather than items of enumerations: ``gpu``.
 BAD_TEXT = re.compile(r"expected a string in \((?P<items>[^)]*)\), got '(?P<name>[^']*)'")
 BAD_KEYWORD = re.compile(

@@ -10,6 +10,12 @@ from kb_build.symbols.api_names import COLLECTION, STRUCT, TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.messages.guides import EXTENSIONS
 from kb_serve.recognise.messages.labelled_nodes import sockets_of_labelled_nodes
+from kb_serve.recognise.messages.parts_of_nodes import (
+    nodes_called,
+    on_called,
+    on_setting,
+    sockets_by_setting,
+)
 from kb_serve.recognise.names.names_of_new import NamesOfNew
 from kb_serve.recognise.removed.newer_nodes import tell_of_the_newer_node
 from kb_serve.recognise.resolving.subscripts import CustomProperties
@@ -22,6 +28,7 @@ if TYPE_CHECKING:
 _OF_COLLECTIONS = "bpy_prop_collection"
 _OF_PROPERTIES = (f"{STRUCT}.get", f"{TYPES}ID.bl_system_properties_get")  # where they are read
 
+_FEW = 3
 _LOOKED_INTO = r"""\.(\w+)\[['"]{}['"]\]"""
 _EDIT_BONES = re.compile(r"\bedit_bones\b")
 _IN_EDIT_MODE = (
@@ -84,7 +91,8 @@ class Keys:
             within = re.findall(_LOOKED_INTO.format(re.escape(name)), query)
             gone = [one for one in recognition.removed if one.path.rpartition(".")[2] in within]
             recognition.removed = [one for one in recognition.removed if one not in gone]
-            self._as_new(name, query, recognition)
+            if not self._as_new(name, query, recognition) and not any(held in query for held in _HOLDERS):
+                self._as_node(name, query, recognition)
         for rank, path in enumerate(sockets_of_labelled_nodes(name, query, self._reader)):
             recognition.add(path, 0.98 - 0.01 * rank, "error message")
         if recognition.removed or any(match.sure >= 0.9 for match in recognition.matches):
@@ -101,9 +109,25 @@ class Keys:
         still_taken = self._sockets.explain(name, query, recognition)
         if not still_taken and not recognition.removed:
             recognition.add(f"{COLLECTION}.get", 0.9, "error message")
+            self._by_setting(name, recognition)
 
-    def _as_new(self, name: str, query: str, recognition: Recognition) -> None:
-        """What a modifier or a constraint is called that nobody gave a name."""
+    def _as_node(self, name: str, query: str, recognition: Recognition) -> None:
+        """Adds the nodes that are called so while they are new."""
+        nodes = nodes_called(name, query, self._reader)
+        recognition.notes += on_called(name, nodes, self._reader)
+        for rank, node in enumerate(nodes[:_FEW]):
+            recognition.add(node.path, 0.96 - 0.01 * rank, "error message")
+
+    def _by_setting(self, name: str, recognition: Recognition) -> None:
+        """Adds the sockets called so that nodes have only with some setting."""
+        sockets = sockets_by_setting(name, self._reader)[:_FEW]
+        recognition.notes += on_setting(sockets)
+        for rank, socket in enumerate(sockets):
+            recognition.add(socket.path, 0.96 - 0.01 * rank, "error message")
+
+    def _as_new(self, name: str, query: str, recognition: Recognition) -> bool:
+        """Adds what a modifier or a constraint is called that nobody gave a name; whether a key may mean one."""
+        is_told = False
         for holder, (what, adds) in _HOLDERS.items():
             meant = self._names_of_new.meant(holder, name)
             if meant is None or any(other in query for other in _HOLDERS.keys() - {holder}):
@@ -114,3 +138,5 @@ class Keys:
                 f"obj.{holder}.new(…)`."
             )
             recognition.add(f"{TYPES}Object.{holder}", 0.95, "error message")
+            is_told = True
+        return is_told

@@ -57,24 +57,9 @@ class Values:
             if "." in match["method"] and (named := self._symbols.function(match["method"])):
                 recognition.add(named, _NAMED, "error message")
         for match in forms.first_matches(forms.BAD_ENUM, query):
-            items = re.findall(r"'([^']+)'", match["items"])
-            function = forms.IN_FUNCTION.search(query)
-            called = self._symbols.function(function["method"]) if function else ""
-            if not called and _OF_OPERATORS in query:
-                called = OPERATORS
-            owners = self._enum_values.taking(items, called)
-            if _OF_PROPERTIES in query:  # nothing was called
-                owners = [owner for owner in owners if "(" not in owner] or owners
-            if _OF_CLASSES in query:
-                owners = self._of_classes(owners) or owners
-            owners = self._meant_first(owners[:_MOST_OWNERS], match["name"], items, query)
-            for rank, owner in enumerate(owners[:2]):
-                recognition.add(plain_path(owner), 0.95 - 0.02 * rank, "error message")
-            likely = self._enum_values.as_likely_as_the_first(owners, items)
-            if removed := self._lost_value(likely, match["name"]):
-                recognition.add_removed(removed)
-            elif note := next(filter(None, self._notes(owners, match["name"], items)), ""):
-                recognition.notes.append(note)
+            self._listed(match["name"], re.findall(r"'([^']+)'", match["items"]), query, recognition)
+        for match in forms.first_matches(forms.UNLISTED_ENUM, query):
+            self._unlisted(match["name"], query, recognition)
         for match in forms.first_matches(forms.BAD_TEXT, query):
             once = [path for path in self._reader.removed_named(match["name"]) if "):" in path]
             if once and (removed := self._removed.of_path(once[0])):
@@ -82,16 +67,66 @@ class Values:
             elif similar := _closest(match["name"], re.findall(r"'([^']+)'", match["items"])):
                 recognition.notes.append(_NO_ITEM.format(name=match["name"], similar=similar))
 
+    def _listed(self, value: str, items: Sequence[str], query: str, recognition: Recognition) -> None:
+        """Adds what takes the items that a message lists, but not a value, and what became of that or is meant."""
+        owners = self._enum_values.taking(items, self._called(query))
+        if _OF_PROPERTIES in query:  # nothing was called
+            owners = [owner for owner in owners if "(" not in owner] or owners
+        if _OF_CLASSES in query:
+            owners = self._of_classes(owners) or owners
+        owners = self._meant_first(owners, value, items, query)[:_MOST_OWNERS]
+        for rank, owner in enumerate(owners[:2]):
+            recognition.add(plain_path(owner), 0.95 - 0.02 * rank, "error message")
+        likely = self._enum_values.as_likely_as_the_first(owners, items)
+        if removed := self._lost_value(likely, value):
+            recognition.add_removed(removed)
+        elif note := next(filter(None, self._notes(owners, value, items)), ""):
+            recognition.notes.append(note)
+
+    def _unlisted(self, value: str, query: str, recognition: Recognition) -> None:
+        """Adds what lost a value, or else takes it somewhere, the most important first, where a message does not list
+        what is taken.
+        """
+        lost = [path.removesuffix(f":{value}") for path in self._reader.removed_named(value)]
+        for owners in (self._refusing(lost, query), self._refusing(self._taking(value), query)):
+            if removed := self._lost_value(owners[:1], value):
+                recognition.add_removed(removed)
+            for rank, owner in enumerate(owners[:2]):
+                recognition.add(plain_path(owner), 0.95 - 0.02 * rank, "error message")
+            if owners:
+                break
+        else:
+            return
+        if note := self._enum_values.condition(owners[0], value):
+            recognition.notes.append(note)
+
+    def _called(self, query: str) -> str:
+        """How what a message says was called begins: a function's name, that of any operator; empty for nothing."""
+        function = forms.IN_FUNCTION.search(query)
+        called = self._symbols.function(function["method"]) if function else ""
+        return called or (OPERATORS if _OF_OPERATORS in query else "")
+
+    def _refusing(self, owners: Iterable[str], query: str) -> list[str]:
+        """Those of some owners of a value that a message may be about, the most important first: arguments of
+        operators, properties, or those of the function that it names.
+        """
+        called = self._called(query)
+        found = [owner for owner in owners if owner.startswith(called)]
+        if _OF_PROPERTIES in query:
+            found = [owner for owner in found if "(" not in owner]
+        weights = self._reader.weights(list(map(plain_path, found)))
+        here = [owner for owner in found if self._reader.entry(plain_path(owner))]
+        return sorted(here, key=lambda owner: -weights.get(plain_path(owner), 0.0))
+
     def _meant_first(self, owners: Sequence[str], value: str, items: Sequence[str], query: str) -> list[str]:
         """Owners, likeliest first; before them what code beside the message sets, and of equally likely ones those
-        that take the value somewhere.
+        that take the value somewhere. Of a list that is cut so short that no owner has just these items, all are
+        equally likely.
         """
-        having = [
-            owner
-            for owner in self._enum_values.as_likely_as_the_first(owners, items)
-            if self._enum_values.has(owner, value)
-        ]
-        written = [owner for owner in owners if f".{last_name(owner)} =" in query]
+        is_cut = self._enum_values.is_cut(owners, items)
+        equal = owners if is_cut else self._enum_values.as_likely_as_the_first(owners[:_MOST_OWNERS], items)
+        having = [owner for owner in equal if self._enum_values.has(owner, value)]
+        written = [owner for owner in owners[:_MOST_OWNERS] if f".{last_name(owner)} =" in query]
         return list(dict.fromkeys((*written, *having, *owners)))
 
     def _notes(self, owners: Sequence[str], name: str, items: Sequence[str]) -> Iterator[str]:

@@ -145,8 +145,9 @@ class EnumValues:
         those that have most of them; of these, those that take just these, in one of their modes.
         """
         shares = list(self.owners(items))
-        most = [(owner, share) for owner, share in shares if share == shares[0][1]][:_MOST_COMPARED]
-        beyond = {owner: self._difference(owner, set(items)) for owner, _ in most}
+        beyond = {
+            owner: self._difference(owner, set(items)) for owner, share in shares if share == shares[0][1]
+        }
         of_called = [row for row in shares if called and row[0].startswith(called)]
         likeliest = of_called or [row for row in shares if row[1] == shares[0][1]]
         weights = self._reader.weights([plain_path(owner) for owner, _ in likeliest])
@@ -161,6 +162,10 @@ class EnumValues:
         """
         beyond = {owner: self._difference(owner, set(items)) for owner in owners}
         return [owner for owner in owners if beyond[owner] == beyond[owners[0]]]
+
+    def is_cut(self, owners: Sequence[str], items: Sequence[str]) -> bool:
+        """Whether even the likeliest owner of the items in a message takes as many others as are listed."""
+        return bool(owners) and self._difference(owners[0], set(items)) >= len(items)
 
     def has(self, owner: str, value: str) -> bool:
         """Whether an enumeration takes a value, somewhere."""

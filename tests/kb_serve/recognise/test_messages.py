@@ -10,6 +10,7 @@ import pytest
 from told_by_blender import told_by_blender
 
 from kb_serve.recognise.message_patterns import prose_of
+from kb_serve.recognise.messages.outside_areas import OF_AN_AREA, OUTSIDE
 from kb_serve.recognise.names.layers import in_layers
 
 if TYPE_CHECKING:
@@ -79,7 +80,7 @@ FIRST = {
     "AttributeError: 'BMLoop' object has no attribute 'uv'": "bmesh.types.BMLoopUV.uv",
     "AttributeError: module 'msgbus' has no attribute 'unsubscribe_rna'": "bpy.msgbus.publish_rna",
     "TypeError: bpy_struct: item.attr = val: enum \"STR\" not found in ('FLOAT', 'INT', 'VECTOR', 'RGBA', 'STRING')": (
-        "bpy.types.NodeClosureOutputItem.socket_type"
+        "bpy.types.FunctionNodeCompare.data_type"
     ),
     "TypeError: Converting py args to operator properties: FOO_OT_one.filepath expected a string type, not PosixPath": (
         "bpy.props.StringProperty"
@@ -604,7 +605,8 @@ def test_a_key_is_no_socket_of_other_letters(kb: KnowledgeBase) -> None:
 @pytest.mark.parametrize("name", ["B", "Value", "Color"])
 def test_a_key_that_many_nodes_have_is_not_one_that_a_node_lost(kb: KnowledgeBase, name: str) -> None:
     notes = kb.query(f"KeyError: 'bpy_prop_collection[key]: key \"{name}\" not found'").notes
-    assert [note.partition("`;")[0] for note in notes] == [f"The collection has no element `{name}"]
+    lost = [note for note in notes if "is there only with" not in note]
+    assert [note.partition("`;")[0] for note in lost] == [f"The collection has no element `{name}"]
 
 
 def test_a_former_name_is_said_to_fail_only_where_it_does(
@@ -1216,3 +1218,81 @@ def test_what_python_says_was_meant_comes_first_where_it_says_the_same(kb: Knowl
         "'use_spring_ang_x'?"
     )
     assert answer.hits[0].id == "bpy.types.RigidBodyConstraint.use_spring_ang_x"
+
+
+@pytest.mark.parametrize(
+    ("message", "first", "told"),
+    [
+        (
+            "TypeError: bpy_struct: item.attr = val: enum \"BONE\" not found in ('OBJECT')",
+            "bpy.types.Object.parent_type",
+            "= 'BONE' is taken only by a child of armature object",
+        ),
+        (
+            "TypeError: bpy_struct: item.attr = val: enum \"VERTEX\" not found in ('OBJECT', 'ARMATURE', 'BONE')",
+            "bpy.types.Object.parent_type",
+            "= 'VERTEX' is taken only by a child of mesh",
+        ),
+    ],
+)
+def test_the_only_items_of_a_property_tell_it_among_many_that_have_them(
+    message: str, first: str, told: str, kb: KnowledgeBase
+) -> None:
+    answer = kb.query(message)
+    assert answer.hits[0].id == first
+    assert any(told in note for note in answer.notes)
+
+
+@pytest.mark.parametrize(
+    ("message", "first", "told"),
+    [
+        (
+            'TypeError: Converting py args to operator properties: enum "PAINT_GPENCIL" not found',
+            "bpy.ops.object.mode_set",
+            "Use `bpy.ops.object.mode_set(mode='PAINT_GREASE_PENCIL')`",
+        ),
+        (
+            'TypeError: bpy_struct: item.attr = val: enum "BLENDER_EEVEE_NEXT" not found',
+            "bpy.types.RenderSettings.engine",
+            "Use `bpy.types.RenderSettings.engine = 'BLENDER_EEVEE'`",
+        ),
+        (
+            'item.attr = val: enum "FFMPEG" not found',
+            "bpy.types.ImageFormatSettings.file_format",
+            "is taken only with media_type='VIDEO'",
+        ),
+    ],
+)
+def test_a_message_without_its_list_leads_to_what_had_or_takes_the_value(
+    message: str, first: str, told: str, kb: KnowledgeBase
+) -> None:
+    answer = kb.query(message)
+    assert answer.hits[0].id == first
+    assert any(told in note for note in answer.notes)
+
+
+def test_a_value_of_nothing_is_told_nothing(kb: KnowledgeBase) -> None:
+    assert kb.query('enum "NONSENSE" not found').notes == ()
+
+
+@pytest.mark.parametrize("name", ["spaces", "region_3d", "shading", "tag_redraw", "edit_tree"])
+def test_what_only_an_area_has_is_none_elsewhere_and_taken_from_a_window(
+    name: str, kb: KnowledgeBase
+) -> None:
+    answer = kb.query(f"AttributeError: 'NoneType' object has no attribute '{name}'")
+    assert OUTSIDE in answer.notes
+    assert OF_AN_AREA.intersection(hit.id for hit in answer.hits)
+    other = kb.query("AttributeError: 'NoneType' object has no attribute 'vertices'")
+    assert OUTSIDE not in other.notes
+
+
+@pytest.mark.blender
+def test_an_area_of_a_window_is_there_outside_of_any() -> None:
+    bpy = pytest.importorskip("bpy")
+    bpy.ops.wm.read_factory_settings()
+    context = bpy.context
+    assert [context.area, context.region, context.region_data, context.space_data] == [None] * 4
+    area = next(a for a in context.window_manager.windows[0].screen.areas if a.type == "VIEW_3D")
+    assert area.spaces.active.type == "VIEW_3D"
+    with context.temp_override(area=area):
+        assert bpy.context.space_data.type == "VIEW_3D"

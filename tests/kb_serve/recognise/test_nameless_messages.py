@@ -148,6 +148,23 @@ bpy.utils.units.to_string("LENGTH", "METRIC", 3)
 bpy.utils.units.to_value("METRIC", "LENGHT", "3mm")
 registered("Panel", name="my_PT_panel", bl_space_type="VIEW_3D", bl_region_type="UI")
 bpy.types.Scene.made = bpy.props.CollectionProperty(type=bpy.types.Object)
+bpy.data.libraries.load(saved()).__enter__()
+file = saved(); bpy.ops.wm.append(directory=f"{file}/Object/", filename="Cube")
+bpy.ops.wm.append(filepath="/none.blend/Object/Cube")
+ob.animation_data.action = action; ob.animation_data.action_slot = bpy.data.actions.new("o").slots.new("OBJECT", "o")
+bmesh.from_edit_mesh(mesh)
+bpy.ops.object.mode_set(mode="EDIT"); mesh.from_pydata([(0, 0, 0)], [], [])
+bpy.data.meshes.remove(ob.to_mesh())
+bpy.data.meshes.new_from_object(bpy.data.objects["Camera"])
+bpy.ops.object.mode_set(mode="EDIT"); bpy.ops.object.join()
+ob.convert_space(to_space="POSE")
+ob.matrix_world = [1.0] * 16
+bpy.data.images["Render Result"].save()
+scene.sequence_editor_create().strips.new_effect("c", "CROSS", 1, frame_start=1, length=5)
+del ob["x"]
+ob.id_properties_ui("x")
+[o for o in bpy.data.objects if o.type == "FONT"][0]
+bpy.app.timers.register(ob.select_get())
 bpy.types.Scene.made = bpy.props.PointerProperty(type=bpy.types.MeshVertex)
 bpy.types.Scene.made = bpy.props.PointerProperty(type=type("Unknown", (bpy.types.PropertyGroup,), {}))
 bpy.app.timers.unregister(print)
@@ -237,6 +254,10 @@ def armature():
     bpy.ops.object.armature_add()
     bpy.ops.object.mode_set(mode="POSE")
     bpy.context.object.data.bones.active = None
+
+def saved():
+    bpy.ops.wm.save_as_mainfile(filepath=os.path.join(tempfile.mkdtemp(), "a.blend"))
+    return bpy.data.filepath
 
 def marked():
     with bpy.context.temp_override(id=ob):

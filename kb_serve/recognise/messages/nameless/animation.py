@@ -125,4 +125,10 @@ ANIMATION = (
         "links them ('Parent', a constraint, a driver): take one of these links away, or let it read something that "
         "does not depend on what it moves.",
     ),
+    NamelessMessage(
+        ("This slot (", "does not belong to the assigned Action"),
+        (f"{T}AnimData.action_slot", f"{T}AnimData.action", f"{T}AnimData.action_suitable_slots"),
+        "Assign the action that the slot is of before: `animation_data.action = action`, then "
+        "`animation_data.action_slot = action.slots[0]`, or one of its `animation_data.action_suitable_slots`.",
+    ),
 )

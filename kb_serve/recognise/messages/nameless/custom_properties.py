@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from kb_build.symbols.api_names import STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 from kb_serve.recognise.resolving.subscripts import PROPERTIES_OF_MODIFIER
@@ -88,5 +89,15 @@ CUSTOM_PROPERTIES = (
         ("bpy.props", f"{T}PropertyGroup"),
         _ONLY_DEFINED,
         ("is not subscriptable",),
+    ),
+    NamelessMessage(
+        ("property not found in group",),
+        (f"{STRUCT}.pop", f"{STRUCT}.get"),
+        'There is no such custom property: `ob.pop("x", None)` removes it if there is one, `if "x" in ob:` asks.',
+    ),
+    NamelessMessage(
+        ("Property not found in IDProperty group",),
+        (f"{STRUCT}.id_properties_ui",),
+        'The custom property is made first, by assigning it: `ob["x"] = 1.0`, then `ob.id_properties_ui("x")`.',
     ),
 )

@@ -5,6 +5,11 @@ from __future__ import annotations
 from kb_build.symbols.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
+# Of the two ways to read from another file.
+_OPEN_FILE = (
+    'What the open file holds is in `bpy.data` already: `bpy.data.objects["Cube"].copy()` makes another one.'
+)
+
 FILES = (
     NamelessMessage(
         ("Selected data-blocks are already assets",),
@@ -63,5 +68,21 @@ FILES = (
         ("Add-on not loaded:", "No module named"),
         ("bpy.ops.preferences.addon_enable", "bpy.utils.refresh_script_paths"),
         "The add-on is not installed under that name; extensions are called `bl_ext.repository.name`.",
+    ),
+    NamelessMessage(
+        ("Cannot load from the current blend file",),
+        (f"{T}BlendDataLibraries.load", f"{T}ID.copy"),
+        _OPEN_FILE,
+    ),
+    NamelessMessage(
+        ("cannot use current file as library",),
+        ("bpy.ops.wm.append", "bpy.ops.wm.link", f"{T}ID.copy"),
+        _OPEN_FILE,
+    ),
+    NamelessMessage(
+        ("': nothing indicated",),
+        ("bpy.ops.wm.append", "bpy.ops.wm.link", f"{T}BlendDataLibraries.load"),
+        "There is no such .blend, or the path lacks the kind of data, and `filepath` alone is not read: "
+        '`bpy.ops.wm.append(directory="/folder/name.blend/Object/", filename="Cube")`.',
     ),
 )

@@ -101,4 +101,28 @@ MESHES = (
         "Edit bones are there in Edit Mode: make the armature's object active, then "
         "`bpy.ops.object.mode_set(mode='EDIT')`.",
     ),
+    NamelessMessage(
+        ("The mesh must be in editmode",),
+        ("bmesh.from_edit_mesh", "bmesh.types.BMesh.from_mesh"),
+        "In Object Mode a BMesh is a copy: `bm = bmesh.new()`, `bm.from_mesh(mesh)`, and `bm.to_mesh(mesh)` when it is "
+        "changed. For the mesh itself: its object active, then `bpy.ops.object.mode_set(mode='EDIT')`.",
+    ),
+    NamelessMessage(
+        ("Cannot add ", " in edit mode"),
+        ("bmesh.from_edit_mesh", f"{T}Mesh.from_pydata", f"{T}MeshVertices.add"),
+        "`bpy.ops.object.mode_set(mode='OBJECT')` comes before. In Edit Mode: `bm = bmesh.from_edit_mesh(mesh)`, "
+        "`bm.verts.new((0, 0, 0))`, then `bmesh.update_edit_mesh(mesh)`.",
+    ),
+    NamelessMessage(
+        ("is outside of main database and cannot be removed from it",),
+        (f"{T}Object.to_mesh_clear", f"{T}Object.to_mesh", f"{T}BlendDataMeshes.new_from_object"),
+        "What `obj.to_mesh()` makes belongs to the object, and `obj.to_mesh_clear()` removes it. One to keep is made "
+        "by `bpy.data.meshes.new_from_object(obj)`.",
+    ),
+    NamelessMessage(
+        ("Object does not have geometry data",),
+        (f"{T}BlendDataMeshes.new_from_object", f"{T}Object.to_mesh", f"{T}Object.type"),
+        "Only some types of objects become a mesh: test `obj.type in {'MESH', 'CURVE', 'SURFACE', 'FONT', 'META'}` "
+        "before.",
+    ),
 )

@@ -70,4 +70,20 @@ OBJECTS = (
         "copies an object.",
         without=(_ANNOTATION,),
     ),
+    NamelessMessage(
+        ("This data does not support joining in edit mode",),
+        ("bpy.ops.object.join", "bpy.ops.object.mode_set"),
+        "`bpy.ops.object.mode_set(mode='OBJECT')` comes before.",
+    ),
+    NamelessMessage(
+        ("is invalid when no pose bone is given",),
+        (f"{T}Object.convert_space",),
+        "Give the bone: `rig.convert_space(pose_bone=rig.pose.bones[\"Bone\"], matrix=matrix, from_space='WORLD', "
+        "to_space='POSE')`.",
+    ),
+    NamelessMessage(
+        ("expected a sequence of float, not ",),
+        (f"{T}Object.matrix_world", "mathutils.Matrix"),
+        "A matrix is given as one, or as rows, `((1, 0, 0, 0), (0, 1, 0, 0), …)`, not as 16 numbers.",
+    ),
 )

@@ -123,4 +123,15 @@ PYTHON = (
         (_GET,),
         f"One of the two values is None. {_FROM_WHERE}",
     ),
+    NamelessMessage(
+        ("IndexError: list index out of range",),
+        ("bpy.context.selected_objects",),
+        "A list of Python's is shorter than that: `bpy.context.selected_objects` is empty where nothing is selected, "
+        "and what a comprehension finds may be nothing. Test it (`if found:`), or `next(iter(found), None)`.",
+    ),
+    NamelessMessage(
+        ("TypeError: function is not callable",),
+        ("bpy.app.timers.register",),
+        "Give the function itself, `bpy.app.timers.register(step)`, not what a call of it returns (`step()`).",
+    ),
 )

@@ -121,4 +121,16 @@ RENDERING = (
         "Effects without input strips (TEXT, COLOR, ADJUSTMENT, MULTICAM) need a length: "
         "`strips.new_effect(name=\"Title\", type='TEXT', channel=2, frame_start=1, length=50)`.",
     ),
+    NamelessMessage(
+        ("Image '", "does not have any image data"),
+        (f"{T}Image.save_render", f"{T}Image.save", f"{T}Image.has_data"),
+        "The image is empty: its file was not found, or, of 'Render Result', nothing was rendered yet. "
+        "`bpy.ops.render.render()`, then `image.save_render(path)`.",
+    ),
+    NamelessMessage(
+        ("Strips.new_effect: effect takes ", " input strip"),
+        (f"{T}StripsTopLevel.new_effect",),
+        "Give the strips that it works on: `strips.new_effect(…, input1=first, input2=second)`; one that takes one "
+        "strip needs `input1` alone.",
+    ),
 )
