@@ -399,8 +399,8 @@ CROWDED = {
     "agents/protocol/judging": 17,
     "kb_build/blender/inside": 30,
     "kb_build/flow": 42,
-    "kb_serve/answer": 31,
-    "kb_serve/answer/steps": 23,
+    "kb_serve/answer": 30,
+    "kb_serve/answer/steps": 20,
     "kb_serve/recognise/names": 21,
     "simworlds/sandbox": 22,
 }

@@ -15,9 +15,9 @@ from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.docs_answer import DocsAnswer, Draft, draft_of, paged, with_notes
 from kb_serve.answer.hit_lines import NAMES, HitLines
 from kb_serve.answer.hits import hits_of
+from kb_serve.answer.known.practice import Practice
 from kb_serve.answer.made_things import made_with
 from kb_serve.answer.pages import page_blocks
-from kb_serve.answer.practice import Practice
 from kb_serve.answer.render import MarkdownRenderer
 from kb_serve.answer.topic_overview import STEPS, Topics
 from kb_serve.errors import BadQuery

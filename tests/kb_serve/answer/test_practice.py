@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from told_by_blender import told_by_blender
 
-from kb_serve.answer.practice import Practice
+from kb_serve.answer.known.practice import Practice
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.answer.practice import Practice
+from kb_serve.answer.known.practice import Practice
 from kb_serve.answer.switches import switch_lines
 
 if TYPE_CHECKING:

@@ -23,7 +23,7 @@ _BAKES_FLUIDS = "bpy.ops.fluid.bake_all"
 _PERSISTENT = f"{HANDLERS}persistent"
 
 
-def _stems(text: str) -> frozenset[str]:
+def stems(text: str) -> frozenset[str]:
     """The stems of some words; of ``h264`` the number alone, as a letter is a variable of any script."""
     return frozenset(stem(word) for word in words(text) if len(word) > 1)
 
@@ -52,7 +52,8 @@ class Advice(NamedTuple):
     before: tuple[int, int] = (99, 0)
 
 
-def _of(*names: str) -> frozenset[str]:
+def of(*names: str) -> frozenset[str]:
+    """The paths of some of RNA's classes and their members."""
     return frozenset(f"{TYPES}{name}" for name in names)
 
 
@@ -267,30 +268,30 @@ _RATED = (
 )
 _FACES = "The lists hold the faces themselves (`BMFace`), not their indices."
 
-_SIMULATED = _stems("cloth physics rigid simulate simulation soft")
+_SIMULATED = stems("cloth physics rigid simulate simulation soft")
 # By one of these a question asks why something ends, and not how it is read.
-_ENDING = _stems("250 end ends freeze freezes stop stops")
+_ENDING = stems("250 end ends freeze freezes stop stops")
 ADVICE: tuple[Advice, ...] = (
     Advice(
         _STAYING,
         beginning=(HANDLERS,),
-        about=_stems("handler persistent callback"),
+        about=stems("handler persistent callback"),
         needs=_PERSISTENT,
     ),
     Advice(
         _NO_TIMERS,
         frozenset({"bpy.app.timers", "bpy.app.timers.register"}),
-        about=_stems("timer delay interval later second repeat periodic"),
+        about=stems("timer delay interval later second repeat periodic"),
     ),
     Advice(
         NO_FLUIDS,
         frozenset({"bpy.ops.object.quick_liquid", "bpy.ops.object.quick_smoke"})
-        | _of("FluidDomainSettings", "FluidModifier"),
+        | of("FluidDomainSettings", "FluidModifier"),
         beginning=("bpy.ops.fluid.bake_",),
         explained=_BAKES_FLUIDS,
         wherever=(
-            _stems("fluid smoke fire liquid"),
-            _stems("abort background crash headless terminate window"),
+            stems("fluid smoke fire liquid"),
+            stems("abort background crash headless terminate window"),
         ),
     ),
     Advice(PLAIN_FUNCTION, frozenset({"bpy.msgbus.subscribe_rna"})),
@@ -300,73 +301,71 @@ ADVICE: tuple[Advice, ...] = (
     Advice(_FACES, frozenset({"bpy_extras.bmesh_utils.bmesh_linked_uv_islands"})),
     Advice(
         _SMOOTHED,
-        wherever=(_stems("smooth"), _stems("angle"), _stems("modifier modifiers")),
+        wherever=(stems("smooth"), stems("angle"), stems("modifier modifiers")),
         needs="bpy.ops.object.shade_auto_smooth",
     ),
     Advice(_RULED, frozenset({"bpy.ops.boid.rule_add"})),
-    Advice(_NO_KEY, _of("RetimingKeys.add")),
-    Advice(
-        _NO_RETIMING, _of("RetimingKey", "RetimingKey.timeline_frame", "RetimingKeys", "RetimingKeys.add")
-    ),
-    Advice(_FALLS, _of("ClothSettings.gravity")),
+    Advice(_NO_KEY, of("RetimingKeys.add")),
+    Advice(_NO_RETIMING, of("RetimingKey", "RetimingKey.timeline_frame", "RetimingKeys", "RetimingKeys.add")),
+    Advice(_FALLS, of("ClothSettings.gravity")),
     Advice(_BAKED, frozenset({"bpy.ops.object.bake"})),
-    Advice(_BAKED_BY, frozenset({"bpy.ops.object.bake"}) | _of("CyclesRenderSettings.bake_type")),
+    Advice(_BAKED_BY, frozenset({"bpy.ops.object.bake"}) | of("CyclesRenderSettings.bake_type")),
     Advice(_COMPRESSED, frozenset({"bpy.ops.wm.save_as_mainfile", "bpy.ops.wm.save_mainfile"})),
-    Advice(_UNREAD, _of("Image.pixels", "Image"), asked=_stems("render result")),
-    Advice(_RATED, _of("RenderSettings.fps", "RenderSettings.fps_base")),
-    Advice(_UNRENDERED, _of("World.color")),
+    Advice(_UNREAD, of("Image.pixels", "Image"), asked=stems("render result")),
+    Advice(_RATED, of("RenderSettings.fps", "RenderSettings.fps_base")),
+    Advice(_UNRENDERED, of("World.color")),
     Advice(_MOVED, frozenset({_RIGID_BODY}), chapters_of=_RIGID_BODY),
     Advice(
         _MOVED,
-        _of("Object.location", "Object.rotation_euler"),
+        of("Object.location", "Object.rotation_euler"),
         # By one of these a question says that something else than a script or its keys moves the object.
-        asked=_stems("bake body bounce drop fall physics rigid roll settle simulate simulation"),
+        asked=stems("bake body bounce drop fall physics rigid roll settle simulate simulation"),
     ),
     Advice(
         _STEPPED,
         wherever=(
             _SIMULATED,
-            _stems("frame frames frame_set"),
-            _stems("after at get jump not only position read result skip step through without"),
+            stems("frame frames frame_set"),
+            stems("after at get jump not only position read result skip step through without"),
         ),
-        unless=_stems("strip split sequencer") | _ENDING | _stems("active begin kinematic start"),
+        unless=stems("strip split sequencer") | _ENDING | stems("active begin kinematic start"),
     ),
     Advice(
         _HELD,
-        _of("RigidBodyObject.kinematic"),
-        asked=_stems("active begin hold kinematic release start starts until"),
+        of("RigidBodyObject.kinematic"),
+        asked=stems("active begin hold kinematic release start starts until"),
     ),
     Advice(
         _CACHED,
         wherever=(
             _SIMULATED,
-            _stems("cache frame frames"),
+            stems("cache frame frames"),
             _ENDING,
         ),
     ),
     Advice(
         _STEPPED,
         wherever=(
-            _stems("bodies body cloth rigid rigidbody soft"),
-            _stems("don doesn never no not nothing still"),
-            _stems("fall happen happens move moves run runs simulate"),
+            stems("bodies body cloth rigid rigidbody soft"),
+            stems("don doesn never no not nothing still"),
+            stems("fall happen happens move moves run runs simulate"),
         ),
     ),
     Advice(
         _FILMED,
         wherever=(
-            _stems("ffmpeg film h264 movie mp4 mpeg4"),
-            _stems("animation export output render save set"),
+            stems("ffmpeg film h264 movie mp4 mpeg4"),
+            stems("animation export output render save set"),
         ),
-        unless=_stems("transparent transparency"),
+        unless=stems("transparent transparency"),
         needs=f"{TYPES}ImageFormatSettings.media_type",
     ),
     *(
         Advice(
             text,
             wherever=(
-                _stems("compositing compositor"),
-                _stems("build create enable python script set setup"),
+                stems("compositing compositor"),
+                stems("build create enable python script set setup"),
             ),
             needs=needs,
         )
@@ -375,116 +374,116 @@ ADVICE: tuple[Advice, ...] = (
     Advice(
         _SHADED,
         beginning=(f"{TYPES}View3DShading",),
-        asked=_stems("material rendered solid viewport wireframe"),
+        asked=stems("material rendered solid viewport wireframe"),
     ),
     Advice(
         _OF_FORMER_PENCIL,
-        wherever=(_stems("gpencil pencil"), _stems("modifier modifiers")),
+        wherever=(stems("gpencil pencil"), stems("modifier modifiers")),
         before=(4, 3),
     ),
     Advice(
         _OF_SOCKET,
         wherever=(
-            _stems("animate keyframe keyframes"),
-            _stems("material node shader socket"),
-            _stems("color colour emission roughness strength"),
+            stems("animate keyframe keyframes"),
+            stems("material node shader socket"),
+            stems("color colour emission roughness strength"),
         ),
     ),
     Advice(
         _AS_MODIFIED,
         wherever=(
-            _stems("deformed evaluated"),
-            _stems("coordinates geometry mesh positions vertex vertices"),
-            _stems("evaluated export get read result"),
+            stems("deformed evaluated"),
+            stems("coordinates geometry mesh positions vertex vertices"),
+            stems("evaluated export get read result"),
         ),
     ),
     Advice(
         _AS_MODIFIED,
         wherever=(
-            _stems("after"),
-            _stems("coordinates positions vertex vertices"),
-            _stems("armature cloth modifier modifiers simulation"),
+            stems("after"),
+            stems("coordinates positions vertex vertices"),
+            stems("armature cloth modifier modifiers simulation"),
         ),
     ),
     Advice(
         _PARENTED,
-        _of("Object.parent", "Object.matrix_parent_inverse"),
-        asked=_stems("jump keep move offset stay"),
+        of("Object.parent", "Object.matrix_parent_inverse"),
+        asked=stems("jump keep move offset stay"),
     ),
-    Advice(_OF_POSE, _of("PoseBone.head", "PoseBone.tail"), asked=_stems("global position space world")),
+    Advice(_OF_POSE, of("PoseBone.head", "PoseBone.tail"), asked=stems("global position space world")),
     Advice(
-        _LINKED_TWICE, _of("CollectionObjects.link", "CollectionObjects.unlink"), asked=_stems("another move")
+        _LINKED_TWICE, of("CollectionObjects.link", "CollectionObjects.unlink"), asked=stems("another move")
     ),
     Advice(
         _BUMPED_INTO,
         wherever=(
-            _stems("cloth particles soft"),
-            _stems("bump collide collides colliding collision"),
-            _stems("floor ground object objects other setup sphere table"),
+            stems("cloth particles soft"),
+            stems("bump collide collides colliding collision"),
+            stems("floor ground object objects other setup sphere table"),
         ),
     ),
-    Advice(_IN_ZONES, frozenset({"bpy.ops.ptcache.bake_all"}), asked=_stems("geometry node nodes zone")),
-    Advice(TAKES_NO_MODIFIER, _of("ObjectModifiers.new"), asked=_stems("none nothing fails silently")),
-    Advice(_TYPED, _of("TextCurve.body"), asked=_stems("animate change counter frame keyframe over time")),
-    Advice(_IN_RADIANS, wherever=(_stems("degree degrees"), _stems("angle euler rotate rotation"))),
+    Advice(_IN_ZONES, frozenset({"bpy.ops.ptcache.bake_all"}), asked=stems("geometry node nodes zone")),
+    Advice(TAKES_NO_MODIFIER, of("ObjectModifiers.new"), asked=stems("none nothing fails silently")),
+    Advice(_TYPED, of("TextCurve.body"), asked=stems("animate change counter frame keyframe over time")),
+    Advice(_IN_RADIANS, wherever=(stems("degree degrees"), stems("angle euler rotate rotation"))),
     Advice(
         _ONE_POINT,
-        _of("CurveSplines.new", "SplinePoints.add", "SplineBezierPoints.add"),
-        about=_stems("bezier curve points spline"),
+        of("CurveSplines.new", "SplinePoints.add", "SplineBezierPoints.add"),
+        about=stems("bezier curve points spline"),
     ),
     Advice(
         _BASIS,
         wherever=(
-            _stems("shape"),
-            _stems("key keys shapekey"),
-            _stems("basis effect first no nothing same single work"),
+            stems("shape"),
+            stems("key keys shapekey"),
+            stems("basis effect first no nothing same single work"),
         ),
     ),
     Advice(
         _EXPRESSED,
-        wherever=(_stems("driver drivers"), _stems("cos expression function functions math scripted sin")),
+        wherever=(stems("driver drivers"), stems("cos expression function functions math scripted sin")),
     ),
     Advice(
         _ADDED_TO_WORLD,
-        _of("RigidBodyWorld.collection", "RigidBodyWorld.constraints"),
-        wherever=(_stems("rigid rigidbody"), _stems("nonetype none select selecting selection without")),
+        of("RigidBodyWorld.collection", "RigidBodyWorld.constraints"),
+        wherever=(stems("rigid rigidbody"), stems("nonetype none select selecting selection without")),
     ),
     Advice(
         _WEIGHED,
-        _of("DynamicPaintSurface.output_name_a", "DynamicPaintSurface.surface_type")
+        of("DynamicPaintSurface.output_name_a", "DynamicPaintSurface.surface_type")
         | {"bpy.ops.dpaint.output_toggle"},
-        asked=_stems("weight group vertex"),
+        asked=stems("weight group vertex"),
     ),
-    Advice(_OF_AOV, _of("View3DShading.render_pass"), asked=_stems("aov")),
+    Advice(_OF_AOV, of("View3DShading.render_pass"), asked=stems("aov")),
     Advice(_JOINED, frozenset({"bpy.ops.object.join"})),
-    Advice(_NO_BONE, _of("ArmatureEditBones.new")),
-    Advice(_FLAT, _of("MeshPolygon.use_smooth")),
-    Advice(_TAB, _of("DynamicPaintModifier", "DynamicPaintModifier.ui_type")),
-    Advice(_RACED, _of("RigidBodyObject.mesh_source", "CollisionModifier")),
+    Advice(_NO_BONE, of("ArmatureEditBones.new")),
+    Advice(_FLAT, of("MeshPolygon.use_smooth")),
+    Advice(_TAB, of("DynamicPaintModifier", "DynamicPaintModifier.ui_type")),
+    Advice(_RACED, of("RigidBodyObject.mesh_source", "CollisionModifier")),
     Advice(
         _RANGED,
         frozenset({_RANGES}),
         explained=_RANGES,
-        about=_stems("property custom limit range min max slider ui"),
+        about=stems("property custom limit range min max slider ui"),
     ),
     Advice(
         _SLOTTED,
-        _of(
+        of(
             "ActionConstraint.action",
             "ActionSlots.new",
             "AnimData.action",
             "BlendDataActions.new",
             "NlaStrip.action",
         ),
-        about=_stems("action"),
+        about=stems("action"),
         needs=f"{TYPES}AnimData.action_slot",
     ),
-    Advice(OF_32_BITS, _of("bpy_prop_array.foreach_get", "bpy_prop_array.foreach_set")),
-    Advice(KEY_OF_SLOTS, _of("Action.slots", "ActionSlots"), needs=SLOTTED),
+    Advice(OF_32_BITS, of("bpy_prop_array.foreach_get", "bpy_prop_array.foreach_set")),
+    Advice(KEY_OF_SLOTS, of("Action.slots", "ActionSlots"), needs=SLOTTED),
     Advice(WITH_AT, frozenset(CLASSES)),
     Advice(
         _TAGGED,
-        _of(
+        of(
             "ChannelDriverVariables.new",
             "Driver",
             "Driver.is_valid",
@@ -493,7 +492,7 @@ ADVICE: tuple[Advice, ...] = (
             "DriverVariable",
             "bpy_struct.driver_add",
         ),
-        about=_stems("driver driven drive"),
+        about=stems("driver driven drive"),
     ),
     Advice(
         _REACHED,
@@ -510,11 +509,11 @@ ADVICE: tuple[Advice, ...] = (
         since=(5, 0),
     ),
     Advice(_EVERY_POINT, frozenset(f"{_STROKE}Point{name}" for name in ("", ".opacity", ".radius"))),
-    Advice(_WANTS_MATERIAL, _of("GreasePencilOffsetModifier.offset_mode")),
-    Advice(_NO_SIZES.format("strokes"), _of("GreasePencilDrawing.add_strokes")),
-    Advice(_NO_SIZES.format("curves"), _of("Curves.add_curves")),
-    Advice(_ALL.format("remove_strokes", "removes all strokes"), _of("GreasePencilDrawing.remove_strokes")),
-    Advice(_ALL.format("set_types", "sets the type of all strokes"), _of("GreasePencilDrawing.set_types")),
-    Advice(_ALL.format("remove_curves", "removes all curves"), _of("Curves.remove_curves")),
-    Advice(_ALL.format("set_types", "sets the type of all curves"), _of("Curves.set_types")),
+    Advice(_WANTS_MATERIAL, of("GreasePencilOffsetModifier.offset_mode")),
+    Advice(_NO_SIZES.format("strokes"), of("GreasePencilDrawing.add_strokes")),
+    Advice(_NO_SIZES.format("curves"), of("Curves.add_curves")),
+    Advice(_ALL.format("remove_strokes", "removes all strokes"), of("GreasePencilDrawing.remove_strokes")),
+    Advice(_ALL.format("set_types", "sets the type of all strokes"), of("GreasePencilDrawing.set_types")),
+    Advice(_ALL.format("remove_curves", "removes all curves"), of("Curves.remove_curves")),
+    Advice(_ALL.format("set_types", "sets the type of all curves"), of("Curves.set_types")),
 )

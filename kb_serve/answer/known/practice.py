@@ -6,14 +6,15 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import stems_of
-from kb_serve.answer.advice import ADVICE
+from kb_serve.answer.known.advice import ADVICE
+from kb_serve.answer.known.recipes import RECIPES
 from kb_serve.recognise.resolving.subscripts import NODES_MODIFIER, CustomProperties
 from simworlds.releases import version_key
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_serve.answer.advice import Advice
+    from kb_serve.answer.known.advice import Advice
     from kb_serve.reader import BaseReader
 
 _MOST_SAID = 20  # words; in more, which are code, those of a group stand by chance
@@ -68,7 +69,7 @@ class Practice:
     @cached_property
     def _of_version(self) -> tuple[Advice, ...]:
         version = version_key(self._reader.meta.get("minor", ""))
-        return tuple(advice for advice in ADVICE if advice.since <= version < advice.before)
+        return tuple(advice for advice in (*ADVICE, *RECIPES) if advice.since <= version < advice.before)
 
     @cached_property
     def _pages(self) -> dict[str, frozenset[str]]:

@@ -1,0 +1,206 @@
+"""What scripts write for tasks that take several calls: each is tried in Blender."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from kb_serve.answer.known.recipes import RECIPES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from kb_serve.knowledge_base import KnowledgeBase
+
+bpy: Any = pytest.importorskip("bpy")
+bmesh: Any = pytest.importorskip("bmesh")
+mathutils: Any = pytest.importorskip("mathutils")
+pytestmark = pytest.mark.blender
+Matrix, Vector = mathutils.Matrix, mathutils.Vector
+CODE = re.compile(r"`([^`]+)`")
+
+
+@pytest.fixture(autouse=True)
+def start_up_file() -> Iterator[None]:
+    """Each test has a new file with the start-up objects."""
+    bpy.ops.wm.read_factory_settings()
+    yield
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+
+
+def updated() -> None:
+    bpy.context.view_layer.update()
+
+
+def cube() -> Any:
+    return bpy.data.objects["Cube"]
+
+
+def told(kb: KnowledgeBase, question: str) -> str:
+    """The one recipe that an answer tells."""
+    notes = kb.query(question).notes
+    (text,) = (recipe.text for recipe in RECIPES if recipe.text in notes)
+    return text
+
+
+def run(text: str, *left_out: int, **names: Any) -> dict[str, Any]:
+    """Runs the statements of a recipe, but for some of them, with some names."""
+    held = {"bpy": bpy, "bm": None, "math": math, "Matrix": Matrix, "Vector": Vector, **names}
+    for number, code in enumerate(CODE.findall(text)):
+        if number not in left_out and ("(" in code or "=" in code):
+            exec(code, held)
+    return held
+
+
+def test_a_moved_objects_matrix_is_updated_first(kb: KnowledgeBase) -> None:
+    ob = cube()
+    ob.location.x = 5
+    assert ob.matrix_world.translation.x == 0
+    run(told(kb, "matrix_world not updated after setting location"))
+    assert ob.matrix_world.translation.x == 5
+
+
+def test_a_copy_is_given_data_and_a_collection(kb: KnowledgeBase) -> None:
+    ob = cube()
+    ob.keyframe_insert("location")
+    new = run(told(kb, "copy object with its data and link"), ob=ob)["new"]
+    assert new.data != ob.data
+    assert new.animation_data.action == ob.animation_data.action
+    assert new.users_collection == (bpy.context.collection,)
+
+
+@pytest.mark.parametrize(
+    ("question", "adds"),
+    [
+        ("convert curve to mesh without operator", bpy.ops.curve.primitive_bezier_circle_add),
+        ("convert a metaball to a mesh", bpy.ops.object.metaball_add),
+    ],
+)
+def test_what_has_a_surface_becomes_a_mesh(
+    question: str, adds: Callable[[], object], kb: KnowledgeBase
+) -> None:
+    adds()
+    assert len(run(told(kb, question), ob=bpy.context.object)["mesh"].vertices) > 0
+
+
+def test_edges_are_sharp_from_an_angle_on(kb: KnowledgeBase) -> None:
+    mesh = cube().data
+    run(told(kb, "how to set smooth shading by angle"), 2, mesh=mesh)
+    assert all(value.value for value in mesh.attributes["sharp_edge"].data)
+    assert mesh.polygons[0].use_smooth
+
+
+@pytest.mark.parametrize(
+    ("question", "name"),
+    [
+        ("set crease of edges by script", "crease_edge"),
+        ("edge bevel weight python 4.0", "bevel_weight_edge"),
+    ],
+)
+def test_what_an_edge_weighs_is_an_attribute(question: str, name: str, kb: KnowledgeBase) -> None:
+    text, mesh = told(kb, question), cube().data
+    bm = bmesh.new()
+    bm.from_mesh(mesh)
+    layer = run(text, 0, 1, 3, bm=bm, mesh=mesh)["layer"]
+    for edge in bm.edges:
+        run(text, 0, 1, 2, edge=edge, layer=layer, mesh=mesh)
+    bm.to_mesh(mesh)
+    assert {value.value for value in mesh.attributes[name].data} == {1.0}
+    mesh.attributes.remove(mesh.attributes[name])
+    run(text, 2, 3, mesh=mesh, edge=mesh.edges[3])
+    assert mesh.attributes[name].data[3].value == 1.0
+
+
+def test_an_environment_is_turned_by_a_mapping(kb: KnowledgeBase) -> None:
+    tree = bpy.data.worlds["World"].node_tree
+    environment = tree.nodes.new("ShaderNodeTexEnvironment")
+    text = told(kb, "world hdri rotation")
+    mapping = run(text, nodes=tree.nodes, links=tree.links, environment=environment)["mapping"]
+    assert mapping.inputs["Rotation"].default_value.z == pytest.approx(math.pi / 2)
+    assert environment.inputs["Vector"].links[0].from_node == mapping
+
+
+def corners(ob: Any) -> list[float]:
+    updated()
+    return [number for vertex in ob.data.vertices for number in ob.matrix_world @ vertex.co]
+
+
+def test_what_is_applied_stays_where_it_is(kb: KnowledgeBase) -> None:
+    ob = cube()
+    ob.scale, ob.rotation_euler.z = (1, 2, 3), 0.5
+    before = corners(ob)
+    run(told(kb, "apply scale and rotation without operator"), ob=ob)
+    assert corners(ob) == pytest.approx(before, abs=1e-5)
+    assert tuple(ob.scale) == (1, 1, 1)
+
+
+def test_a_camera_looks_at_a_point(kb: KnowledgeBase) -> None:
+    camera, target = bpy.data.objects["Camera"], Vector((1, 2, 3))
+    run(told(kb, "camera look at a point"), camera=camera, target=target)
+    updated()
+    seen = camera.matrix_world.to_3x3() @ Vector((0, 0, -1))
+    assert tuple(seen) == pytest.approx(tuple((target - camera.location).normalized()), abs=1e-5)
+
+
+def value(text: str, **names: Any) -> Any:
+    """What the first code of a recipe gives."""
+    return eval(CODE.findall(text)[0], {"Vector": Vector, **names})
+
+
+def test_how_far_apart_objects_are_and_where_their_boxes_lie(kb: KnowledgeBase) -> None:
+    ob, other = cube(), bpy.data.objects["Camera"]
+    ob.location, other.location = (0, 0, 10), (0, 3, 14)
+    updated()
+    assert value(told(kb, "distance between two objects"), a=ob, b=other) == pytest.approx(5)
+    box = value(told(kb, "get bounding box in world coordinates"), ob=ob)
+    assert {round(corner.z) for corner in box} == {9, 11}
+
+
+def test_a_normal_holds_for_any_scale(kb: KnowledgeBase) -> None:
+    ob = cube()
+    ob.data.vertices[0].co.x += 0.5
+    ob.scale = (1, 2, 3)
+    updated()
+    polygon = ob.data.polygons[0]
+    a, b, c = (ob.matrix_world @ ob.data.vertices[number].co for number in polygon.vertices[:3])
+    normal = value(told(kb, "get the face normal in world space"), ob=ob, polygon=polygon)
+    assert abs(normal.dot((b - a).cross(c - b).normalized())) > 0.9
+
+
+def test_a_turn_around_the_worlds_axis_leaves_the_place(kb: KnowledgeBase) -> None:
+    ob = cube()
+    ob.location, ob.rotation_euler = (1, 2, 3), (0.3, 0.4, 0.5)
+    updated()
+    wanted = Matrix.Rotation(0.7, 3, "Z") @ ob.matrix_world.to_3x3()
+    run(told(kb, "how to rotate object around world axis"), ob=ob, angle=0.7)
+    updated()
+    for row, other in zip(ob.matrix_world.to_3x3(), wanted, strict=True):
+        assert tuple(row) == pytest.approx(tuple(other), abs=1e-5)
+    assert tuple(ob.location) == (1, 2, 3)
+
+
+def test_a_node_is_found_by_its_type(kb: KnowledgeBase) -> None:
+    material = bpy.data.materials["Material"]
+    material.node_tree.nodes["Principled BSDF"].name = "other"
+    found = value(told(kb, "get node by type in a material"), material=material)
+    assert (found.name, found.type) == ("other", "BSDF_PRINCIPLED")
+
+
+@pytest.mark.parametrize(
+    "question",
+    [
+        "bpy.ops.object.visual_transform_apply()",
+        "bpy.ops.object.duplicates_make_real(use_base_parent=True)",
+        "euler degrees to quaternion and smooth blend of two rotations",
+        "copy modifiers from one object to another",
+        "curve to mesh node",
+        "limit distance between objects constraint",
+        "make the camera look at an empty with track to",
+        "camera keeps looking at a cube, script",
+    ],
+)
+def test_a_question_of_something_else_is_told_none(question: str, kb: KnowledgeBase) -> None:
+    assert not {recipe.text for recipe in RECIPES}.intersection(kb.query(question).notes)
