@@ -16,18 +16,19 @@ from kb_build.symbols.flags import operator_areas, refused_nothing
 from kb_build.symbols.lines import operator_needs
 from kb_serve.answer.budget import tokens
 from kb_serve.answer.steps.creation_calls import CreationCalls
+from kb_serve.answer.steps.edited_as import edited_as
 from kb_serve.answer.steps.inserted import inserted
 from kb_serve.answer.steps.instances import Instances
 from kb_serve.answer.steps.members import call_of
 from kb_serve.answer.steps.new_scene import NewScene
-from kb_serve.answer.steps.nodes import NodeSteps
+from kb_serve.answer.steps.node_trees.nodes import NodeSteps
+from kb_serve.answer.steps.node_trees.trees import EMBEDDED_TREES, TreeSteps
 from kb_serve.answer.steps.operators import POINT_CACHE, UNDO, runs
 from kb_serve.answer.steps.own_properties import made_by_subscript
 from kb_serve.answer.steps.places import PlaceSteps
 from kb_serve.answer.steps.reached import ReachedSettings
 from kb_serve.answer.steps.scene_parts import scene_parts
 from kb_serve.answer.steps.settings import OTHERS_ELEMENT, SettingSteps
-from kb_serve.answer.steps.trees import EMBEDDED_TREES, TreeSteps
 from kb_serve.interface import is_of_interface
 
 if TYPE_CHECKING:
@@ -338,13 +339,18 @@ class Steps:
             return
         if creation.call.startswith("bpy.data."):
             yield from self._places.of(main)
-        has_settings = is_first or self._names.names(main)
-        if has_settings:
-            yield from self._settings.own(main, creation)
-        if is_first:
-            yield from self._nodes.in_own_tree(main)
-        if has_settings:
-            yield from self._settings.further(main, creation)
+        if not (is_first or self._names.names(main)):
+            return
+        own, further = self._settings.own(main, creation), self._settings.further(main, creation)
+        nodes = self._nodes.in_own_tree(main) if is_first else iter(())
+        edited = edited_as(main, self._scene.variables.of(main), self._reader)
+        # What counts most comes first. What another thing edits has little else to set.
+        if first_edit := next(edited, ""):
+            parts = (further, (first_edit,), edited, own)
+        else:
+            parts = (nodes, own, further) if self._nodes.decide(main) else (own, nodes, further)
+        for part in parts:
+            yield from part
 
     def _needs_nothing(self, creation: Creation) -> bool:
         """Whether an operator makes a thing wherever it is called."""

@@ -48,7 +48,7 @@ def _names() -> Names:
     bpy.context.collection.objects.link(other)
     obj = bpy.context.object
     held = {"bpy": bpy, "obj": obj, "other": other, "scene": bpy.context.scene, "target_id": obj}
-    return {**_GIVEN, **held, "view_layer": bpy.context.view_layer}
+    return {**_GIVEN, **held, "view_layer": bpy.context.view_layer, "bmesh": import_module("bmesh")}
 
 
 def _is_known(node: ast.AST, names: Names) -> bool:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from kb_serve.answer.steps.instances import Instances
     from kb_serve.answer.steps.new_scene import NewScene
-    from kb_serve.answer.steps.trees import TreeSteps
+    from kb_serve.answer.steps.node_trees.trees import TreeSteps
     from kb_serve.reader import Creation
 
 # What a maker must have made before what it makes is of use.

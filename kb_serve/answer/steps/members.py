@@ -9,28 +9,56 @@ from kb_build.symbols.api_names import ID, TYPES
 from kb_build.symbols.lines import SET
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
     from kb_serve.reader import BaseReader, SymbolEntry
 
-_MOST_SETTINGS = 10
+MOST_SETTINGS = 10
 _MOST_INPUTS = 8
+_LEAST = 1.0  # weight of a setting that somebody uses
 _NONE = " = None"
 _INPUT = re.compile(r'`(inputs\[".+?"\])` · .*?( = .*)')
 _ENDS = re.compile("[12]$")
 _PLAIN = ("name", "index")  # every thing has them
+_DISPLAY = "Viewport Display"  # the section of the manual on what no render shows
+_OF_DISPLAY = "; of its display in the viewport alone: "
 
 
-def settings_of(cls: str, reader: BaseReader) -> str:
+def settings_of(cls: str, reader: BaseReader, most: int = MOST_SETTINGS) -> str:
     """The heaviest settings of a class, each with its default and first values; empty for a class without any.
 
-    What is given to it, a data-block where a new one has none, counts as a setting.
+    What is given to it, a data-block where a new one has none, counts as a setting. Those of its display in the
+    viewport come last, and are said to be that, where it has others.
     """
     entries, parts = _heaviest_settings(cls, reader)
+    entries = entries[:most]
+    displayed = [entry for entry in entries if _is_of_display(entry, reader)]
+    others = [entry for entry in entries if entry not in displayed]
+    told = [_in_words(each, parts) for each in (others, displayed)]
+    return _OF_DISPLAY.join(filter(None, told))
+
+
+def own_settings(cls: str, most: int, reader: BaseReader) -> str:
+    """The heaviest settings that a class itself has, and that count at all, each as above; empty for none."""
+    entries, _ = _heaviest_settings(cls, reader)
+    own = reader.heaviest((entry for entry in entries if entry.owner == cls), _LEAST)
+    return _in_words(own[:most], {})
+
+
+def _in_words(entries: Iterable[SymbolEntry], parts: Mapping[str, SymbolEntry]) -> str:
     told: list[str] = []
     for entry in entries:
         told.append(_short(entry))
         if part := parts.get(entry.name):
             told.append(f"`{part.name}` (after `{entry.name}`){_NONE} ({part.target})")
     return ", ".join(told)
+
+
+def _is_of_display(entry: SymbolEntry, reader: BaseReader) -> bool:
+    """Whether the manual explains a setting where it explains how a thing looks in the viewport alone."""
+    passage = reader.passage(entry.path)
+    page = reader.page(passage[0]) if passage else None
+    return page is not None and passage is not None and page.sections[passage[1]].title == _DISPLAY
 
 
 def inputs_of(node: str, reader: BaseReader) -> str:
@@ -73,7 +101,7 @@ def _heaviest_settings(cls: str, reader: BaseReader) -> tuple[list[SymbolEntry],
         key=lambda entry: entry.name,
     )
     first = [*ends, *heaviest] if len(ends) > 1 else heaviest
-    return [*dict.fromkeys(first)][:_MOST_SETTINGS], parts
+    return [*dict.fromkeys(first)][:MOST_SETTINGS], parts
 
 
 def part_given_with(pointer: SymbolEntry, reader: BaseReader) -> SymbolEntry | None:

@@ -9,7 +9,7 @@ from kb_build.symbols.api_names import ID, OPERATORS, TYPES
 from kb_build.symbols.flags import empty_when_new, fillers
 from kb_build.symbols.lines import mode_needed
 from kb_build.symbols.records import EMPTY, READ_ONLY
-from kb_serve.answer.steps.members import are_settings_seen, call_of, settings_of
+from kb_serve.answer.steps.members import MOST_SETTINGS, are_settings_seen, call_of, own_settings, settings_of
 from kb_serve.answer.steps.operators import POINT_CACHE, UNDO
 from kb_serve.answer.steps.parts import parts
 from kb_serve.answer.steps.pointer_fills import stays_empty
@@ -17,7 +17,7 @@ from kb_serve.answer.steps.variable_names import OBJ
 from kb_serve.answer.steps.working_object import OTHER
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
     from kb_build.symbols.records import Symbol
     from kb_serve.answer.steps.new_scene import NewScene
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 _LEAST = 1  # weight of a collection or function
 _MEMBERS = 3  # collections, and functions
 _HOLDERS = 4  # pointers of a thing whose settings are shown
+_OTHER_KINDS = 4  # besides the one that is made, of which each is told
+_OF_OTHER_KIND = 4  # settings
 _ADDING = ("new", "add", "append", "link")  # what functions that add are called
 _FILE_ALONE = "`filepath`"  # settings of what is a file's contents
 _STUB = "UnknownType"  # Blender's, for elements of which it says nothing
@@ -49,9 +51,25 @@ class SettingSteps:
             yield f"set on `{variable}`: {own}"
         # The class that the call makes, where that is one of several below it: a point light for a light.
         kinds = [one.path for one in self._reader.descendants(cls)] if variable else []
-        for kind, made in self._reader.creations(kinds).items():
-            if made.call == creation.call and (of_kind := settings_of(kind, self._reader)):
+        made_kinds = self._reader.creations(kinds)
+        for kind, made in made_kinds.items():
+            of_kind = own_settings(kind, MOST_SETTINGS, self._reader) or settings_of(kind, self._reader)
+            if made.call == creation.call and of_kind:
                 yield f"set on `{variable}` (`{kind.removeprefix(TYPES)}`): {of_kind}"
+        yield from self._of_other_kinds(made_kinds, creation)
+
+    def _of_other_kinds(self, kinds: Mapping[str, Creation], creation: Creation) -> Iterator[str]:
+        """The few settings that each of the other kinds has which the same function makes: the size of an area light.
+        Of many kinds each is a topic of its own.
+        """
+        others = {
+            kind: made
+            for kind, made in kinds.items()
+            if made.maker == creation.maker and made.call != creation.call
+        }
+        for kind, made in others.items() if len(others) <= _OTHER_KINDS else ():
+            if own := own_settings(kind, _OF_OTHER_KIND, self._reader):
+                yield f"set on `{made.call}` (`{kind.removeprefix(TYPES)}`): {own}"
 
     def further(self, cls: str, creation: Creation) -> Iterator[str]:
         """What a new thing holds, its functions, then the settings that it points to, and those below, where they

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.symbols.api_names import TYPES
 from kb_serve.answer.steps.made_line import made_line
-from kb_serve.answer.steps.node_links import OF_WORLDS, SHADER_TREE
+from kb_serve.answer.steps.node_trees.node_links import OF_WORLDS, SHADER_TREE
 from kb_serve.answer.steps.parts import parts
 
 if TYPE_CHECKING:

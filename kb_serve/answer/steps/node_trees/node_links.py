@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
 
     from kb_serve.answer.steps.new_scene import NewScene
-    from kb_serve.answer.steps.node_items import NodeItems
+    from kb_serve.answer.steps.node_trees.node_items import NodeItems
 
 SHADER_TREE = f"{TYPES}ShaderNodeTree"
 _WORLD_END, _LIGHT_END = f"{TYPES}ShaderNodeOutputWorld", f"{TYPES}ShaderNodeOutputLight"

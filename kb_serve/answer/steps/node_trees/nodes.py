@@ -8,8 +8,8 @@ from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.records import PAIRS
 from kb_serve.answer.render import is_machinery
 from kb_serve.answer.steps.members import call_of, inputs_of
-from kb_serve.answer.steps.node_items import NodeItems
-from kb_serve.answer.steps.node_links import NodeLinks
+from kb_serve.answer.steps.node_trees.node_items import NodeItems
+from kb_serve.answer.steps.node_trees.node_links import NodeLinks
 from kb_serve.answer.steps.pointer_fills import stays_empty
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from kb_serve.answer.steps.creation_calls import CreationCalls
     from kb_serve.answer.steps.new_scene import NewScene
-    from kb_serve.answer.steps.trees import TreeSteps
+    from kb_serve.answer.steps.node_trees.trees import TreeSteps
     from kb_serve.reader import Creation, SymbolEntry
 
 _FUNCTIONS = 3  # of one node
@@ -48,6 +48,11 @@ class NodeSteps:
         yield from tree.steps
         yield from self._joined(creations, tree.cls)
         yield from self._functions(creations)
+
+    @staticmethod
+    def decide(holder: str) -> bool:
+        """Whether what is rendered of a thing is what the nodes in its tree say, rather than its own settings."""
+        return holder in _WITH_OUTPUT
 
     def in_own_tree(self, cls: str) -> Iterator[str]:
         """The nodes of what holds a tree, as a material does."""
