@@ -15,6 +15,7 @@ from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.calls_in_areas import calls_in_areas
 from kb_serve.answer.condition_lines import condition_lines
 from kb_serve.answer.enum_items import item_lines
+from kb_serve.answer.leads_to import leads_to
 from kb_serve.answer.outcomes import outcomes
 from kb_serve.answer.own_classes import asked_of_classes, definition
 from kb_serve.answer.pages import passage_block
@@ -100,12 +101,8 @@ class MarkdownRenderer:
             if used.text:
                 yield used
             yield from self._class(symbol.path, members)
-        elif symbol.kind in {"operator", "function"}:
-            yield from arguments(symbol, asked)
-        elif symbol.kind in {"module", "data"} and (lines := self.reader.content_lines(symbol.path)):
-            yield AnswerBlock("**Contents**\n" + "\n".join(f"- {line}" for line in lines), "contents")
-        elif symbol.collection:
-            yield from self._of_collection(symbol)
+        else:
+            yield from self._before_values(symbol, asked)
         if is_stand_in(symbol):
             yield AnswerBlock(f"**Values**\n{_PUT_TOGETHER}", "values")
         elif symbol.enum_items:
@@ -117,6 +114,17 @@ class MarkdownRenderer:
             yield from passage_block(symbol.path, self.reader)
             if used.text:
                 yield used
+
+    def _before_values(self, symbol: Symbol, asked: AskedOf) -> Iterator[AnswerBlock]:
+        """What is taken, held or led to by what is no class."""
+        if symbol.kind in {"operator", "function"}:
+            yield from arguments(symbol, asked)
+        elif symbol.kind in {"module", "data"} and (lines := self.reader.content_lines(symbol.path)):
+            yield AnswerBlock("**Contents**\n" + "\n".join(f"- {line}" for line in lines), "contents")
+        elif symbol.collection:
+            yield from self._of_collection(symbol)
+        elif symbol.type == "pointer":
+            yield from leads_to(symbol, self.reader)
 
     def _of_collection(self, collection: Symbol) -> Iterator[AnswerBlock]:
         """What a collection adds and removes elements with, and in which mode alone."""
