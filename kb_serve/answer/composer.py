@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.several import QuestionPart
 
 _EXCERPT_TOKENS = 300  # of the best of several candidates
+_SHORT_PAGE = 500  # tokens of one that is shown to its end
 _LEAST_SAID = 30
 # What is said of a call → how else it is said.
 _SAID_OF_A_CALL = {
@@ -52,6 +53,7 @@ _SETTINGS = 2  # of a topic that are hits before its classes
 _LONGEST_WORD = 100  # no name of Blender's has as many letters
 _INSTEAD = " Write `"
 _OPERATOR = re.compile(r"bpy\.ops\.\w+\.\w+")
+_NOTHING = re.compile(r"This \w+ has no [\w ]+\.\s*")
 _COMMENT = re.compile(r"(?:^|(?<=\s))#\s[^\n]*\n", re.MULTILINE)  # of code, of which lines are joined
 _DOCSTRING = re.compile(r"(:\s*\n\s*)(?:\"{3}.*?\"{3}|'{3}.*?'{3})", re.DOTALL)
 _LONG_WORD = re.compile(rf"(\w{{{_LONGEST_WORD}}})\w+")
@@ -239,13 +241,15 @@ class AnswerComposer:
 
     def _excerpt(self, hit: Hit, row: RankedId, asked: AskedOf = ASKED_NOTHING) -> Iterator[AnswerBlock]:
         """The beginning of the best hit: its description, or the heading and the section that matches, the members
-        that do, and as much more as is short. Sections that only say in which panel something is are not counted, nor
-        are the names that stand with labels: they must not take the place of what was asked for.
+        that do, and as much more as is short; a short page to its end. Sections that only say in which panel something
+        is are not counted, nor are the names that stand with labels: they must not take the place of what was asked.
         """
+        blocks = [block for block in self._whole(hit, row, asked) if not _says_nothing(block.text)]
+        is_short = hit.is_page and sum(tokens(block.plain or block.text) for block in blocks) <= _SHORT_PAGE
         said = 0
-        for number, block in enumerate(self._whole(hit, row, asked)):
+        for number, block in enumerate(blocks):
             size = tokens(block.plain or block.text)
-            if number > 1 and said + size > _EXCERPT_TOKENS and said > _LEAST_SAID:
+            if number > 1 and said + size > _EXCERPT_TOKENS and said > _LEAST_SAID and not is_short:
                 return
             said += size if number and not _is_box(block.text) else 0
             yield block
@@ -298,6 +302,11 @@ def _is_told(path: str, text: str) -> bool:
     """Whether a text has a name: the path, or its last part as code and its owner."""
     owner, _, name = path.removeprefix(TYPES).rpartition(".")
     return path in text or (bool(owner) and f"`{name}`" in text and f"`{owner}`" in text)
+
+
+def _says_nothing(text: str) -> bool:
+    """Whether a section only says that there is nothing to say: a node without inputs."""
+    return _NOTHING.fullmatch(text.partition("\n\n")[2]) is not None
 
 
 def _is_box(text: str) -> bool:

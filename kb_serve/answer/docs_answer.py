@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from kb_serve.answer.hits import Hit
 
 _FOOTER_TOKENS = 70
+_REST = "the rest of the last line, "
 _NOTES_TOKENS = 500
 _NO_VALUE = re.compile(rf"'([^'\n]+)'`?{NO_VALUE}")
 
@@ -84,14 +85,17 @@ def paged(query: str, draft: Draft, max_tokens: int, part: int, command: str) ->
         return DocsAnswer(draft.kind, text, draft.hits, draft.notes, part, len(parts))
     text, after = shown(parts, part - 1, max_tokens - _FOOTER_TOKENS)
     call = next_call(query, after + 1, command)
-    footer = _footer(call, range(part, after + 1), len(parts), names_of(parts[after:]))
+    is_cut = "\n" not in parts[after].glue
+    footer = _footer(call, range(part, after + 1), len(parts), names_of(parts[after:]), is_cut=is_cut)
     return DocsAnswer(draft.kind, f"{text}\n\n{footer}", draft.hits, draft.notes, part, len(parts), after + 1)
 
 
-def _footer(call: str, seen: range, parts: int, left: Sequence[str]) -> str:
-    """What is left, and the call that gets it; with a blank line above it within ``_FOOTER_TOKENS``."""
+def _footer(call: str, seen: range, parts: int, left: Sequence[str], *, is_cut: bool) -> str:
+    """What is left, the rest of a line that is cut, and the call that gets it; with a blank line above it within
+    ``_FOOTER_TOKENS``.
+    """
     span = f"Part {seen[0]}" if len(seen) == 1 else f"Parts {seen[0]} to {seen[-1]}"
-    head = f"_{span} of {parts}. Left: "
+    head = f"_{span} of {parts}. Left: {_REST if is_cut else ''}"
     tail = f". Next: {call}_"
     names = clip(", ".join(left), _FOOTER_TOKENS - 1 - tokens(head + tail))
     return head + names + tail

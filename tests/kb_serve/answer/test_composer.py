@@ -9,15 +9,19 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import SEED, classes, of_data, paths
 
+from kb_build.store import Contents, write_base
+from kb_build.symbols.records import Page, Section
 from kb_serve.answer.budget import tokens
 from kb_serve.answer.composer import AnswerComposer
 from kb_serve.answer.next_call import next_call
 from kb_serve.errors import BadQuery
+from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.query_limits import LEAST_TOKENS, LIMIT, MAX_LIMIT, MAX_TOKENS
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from kb_serve.answer.docs_answer import DocsAnswer
-    from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader
 
 QUERIES = (
@@ -278,3 +282,37 @@ def test_the_code_of_a_query_is_checked_once_for_all_parts_of_its_answer(kb: Kno
 )
 def test_what_is_wrong_with_a_call_is_said_once(kb: KnowledgeBase, code: str) -> None:
     assert len(kb.query(code).notes) == 1
+
+
+def test_a_short_page_is_shown_to_its_end_without_what_says_nothing(tmp_path: Path) -> None:
+    slug = "shader_nodes/particle_info"
+    sections = (
+        Section("top", "Particle Info Node", 1, "It gives data of the particle that made an instance. " * 12),
+        Section("inputs", "Inputs", 2, "This node has no inputs."),
+        Section("outputs", "Outputs", 2, "**Random**\n  A random value of each particle. " * 9),
+    )
+    pages = [
+        Page(slug, "manual", "5.1", "Particle Info Node", sections),
+        Page("other", "manual", "5.1", "Other", (Section("top", "Other", 1, "An instance of a particle."),)),
+    ]
+    write_base(tmp_path / "base.sqlite", Contents([], pages, (), {}))
+    with KnowledgeBase(tmp_path / "base.sqlite") as own:
+        found = own.query("data of the particle that made each instance")
+        assert found.hits[0].id == slug
+        assert "A random value of each particle" in found.text
+        assert "This node has no inputs" not in found.text
+        assert "This node has no inputs" in own.query(slug).text
+
+
+def test_the_footer_says_where_the_last_line_goes_on(kb: KnowledgeBase) -> None:
+    query = "bpy.ops.object.modifier_add"
+    numbers = range(1, 1 + kb.query(query, max_tokens=LEAST_TOKENS).parts)
+    parts = [kb.query(query, max_tokens=LEAST_TOKENS, part=number) for number in numbers]
+    everything = body(kb.query(query, max_tokens=1_000_000))
+    cut = [part for part in parts if "Left: the rest of the last line, " in part.text]
+    assert cut
+    lines = {"".join(line.split()) for line in kb.query(query, max_tokens=1_000_000).text.split("\n")}
+    for part in cut:
+        last = FOOTER.sub("", part.text).split("\n")[-1]
+        assert "".join(last.split()) not in lines
+        assert "".join(last.split()) in everything
