@@ -1,14 +1,13 @@
 """Whether the planned camera sees its subjects at the first frame, by their boxes; one that moves starts there.
 
-How much of the picture they cover is what the verifier measures, the convex outline: as of the whole box, or of the
-ball. Whatever is built in that place covers no more.
+How much of the picture they cover is what the verifier measures, the convex outline: as of the whole box. Whatever is
+built in that place covers no more.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
-import re
 from typing import TYPE_CHECKING
 
 from agents.plan.boxes import box_of, boxes_of
@@ -29,10 +28,6 @@ _OUTSIDE = (
 _COVER = 0.01  # share of the picture that a subject must fill
 _GROWING = frozenset({"fluid", "emitter"})  # at first there may be nothing of them
 _SHARES = (0.1, 0.5, 0.9)
-# A name that ends so is of something round: "Ball", "Wrecking_Ball_02", "Football"; not "Ball_Stand".
-_BALL = re.compile(r"(?:ball|sphere|globe|marble|bead)[\W\d_]*$", re.IGNORECASE)
-_EQUAL = 0.05  # by how much, in parts, the sizes of what is round may differ
-_AROUND = 32  # points of a ball's outline
 
 
 def camera_axes(plan: ScenePlan) -> tuple[Vector, Vector, Vector] | None:
@@ -65,7 +60,7 @@ def camera_doubts(plan: ScenePlan, boxes: dict[str, PlannedBox]) -> Iterator[Fau
                 (across * scale * aspect[0] / ahead, up * scale * aspect[1] / ahead) if ahead > 1e-6 else None
                 for across, up, ahead in (_in_view(basis, camera.position, point) for point in points)
             ]
-            for points in (_samples(box), _outline(box))
+            for points in (_samples(box), box.corners)
         )
         outside = sum(point is None or max(map(abs, point)) > 1 for point in seen) / len(seen)
         path = f"camera.subjects[{place}]"
@@ -117,21 +112,6 @@ def _in_view(basis: tuple[Vector, Vector, Vector], eye: Vector, point: Vector) -
     away = [end - start for start, end in zip(eye, point, strict=True)]
     x, y, z = (sum(part * step for part, step in zip(axis, away, strict=True)) for axis in basis)
     return (x, y, z)
-
-
-def _outline(box: PlannedBox) -> list[Vector]:
-    """Points whose convex outline holds the object: the corners of its box; of a ball, points around it."""
-    sizes = box.planned.dimensions
-    if not _BALL.search(box.name) or max(sizes) > (1 + _EQUAL) * min(sizes):
-        return list(box.corners)
-    radius = max(sizes) / 2 / math.cos(math.pi / _AROUND)
-    points: list[Vector] = []
-    for ring, place in itertools.product(range(_AROUND // 2 + 1), range(_AROUND)):
-        tilt, turn = 2 * math.pi * ring / _AROUND, 2 * math.pi * place / _AROUND
-        x, y, z = box.centre
-        level = radius * math.sin(tilt)
-        points.append((x + level * math.cos(turn), y + level * math.sin(turn), z + radius * math.cos(tilt)))
-    return points
 
 
 def _samples(box: PlannedBox) -> list[Vector]:

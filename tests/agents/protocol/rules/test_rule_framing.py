@@ -51,25 +51,24 @@ def test_what_stands_in_the_middle_of_the_picture_is_framed(session: LiveSession
 
 
 CRATE = "box('Case', (-0.15, -0.25, 0), (0.15, 0.25, 0.4), at={at}, turn={turn})"
-BALL = "ball('Round', 0.25, at=({at}[0], {at}[1], {at}[2] + 0.25), segments=64)"
 
 
-@pytest.mark.parametrize(
-    ("name", "made", "size", "at", "turn"),
-    [
-        ("Crate", CRATE, (0.3, 0.5, 0.4), (2, 1, -0.5), (0, 0, 30)),
-        ("Crate", CRATE, (0.3, 0.5, 0.4), (-1, 3, 1), (20, 40, 70)),
-        ("Iron_Ball_2", BALL, (0.5, 0.5, 0.5), (-2.5, 1, 0.7), (0, 0, 0)),
-        ("Iron_Ball_2", BALL, (0.5, 0.5, 0.5), (0, 4, 0), (0, 0, 0)),
-    ],
-)
+@pytest.mark.parametrize(("at", "turn"), [((2, 1, -0.5), (0, 0, 30)), ((-1, 3, 1), (20, 40, 70))])
 def test_the_plan_is_doubted_by_just_as_much_as_is_measured_when_it_is_built(
-    session: LiveSession, name: str, made: str, size: Vector, at: Vector, turn: Vector
+    session: LiveSession, at: Vector, turn: Vector
 ) -> None:
-    build(session, f"{STAGE}\nthing({name!r}, {made.format(at=at, turn=turn)}, at={at}, turn={turn})")
+    build(session, f"{STAGE}\nthing('Crate', {CRATE.format(at=at, turn=turn)}, at={at}, turn={turn})")
     planned = a_plan(
-        objects=[{"name": name, "systems": ["set"], "dimensions": size, "position": at, "rotation": turn}],
-        camera={"position": (0, -10, 0), "target": (0, 0, 0), "lens": 50, "subjects": [name]},
+        objects=[
+            {
+                "name": "Crate",
+                "systems": ["set"],
+                "dimensions": (0.3, 0.5, 0.4),
+                "position": at,
+                "rotation": turn,
+            }
+        ],
+        camera={"position": (0, -10, 0), "target": (0, 0, 0), "lens": 50, "subjects": ["Crate"]},
         render={"kind": "still", "resolution": (1920, 1080)},
     )
     measured = the_finding(verified(session, "R14", planned)).measured
