@@ -1,4 +1,4 @@
-"""An operator that is to change a modifier, and runs while another object is active.
+"""An operator that is to change an object, and runs while another one is active.
 
 ```python
 bpy.ops.mesh.primitive_cube_add()
@@ -8,10 +8,14 @@ hole = cube.modifiers.new("Hole", "BOOLEAN")
 bpy.ops.object.modifier_apply(modifier="Hole")  # reported: the sphere is the active object
 bpy.context.view_layer.objects.active = cube
 bpy.ops.object.modifier_apply(modifier="Hole")
+ball = bpy.data.objects.new("Ball", mesh)
+bpy.context.collection.objects.link(ball)
+bpy.ops.rigidbody.object_add()  # of the cube, which is active
+ball.rigid_body.mass = 2  # reported: ball.rigid_body is None
 ```
 
-Such operators look for the modifier on the active object, and do nothing where it has none of the name: no error tells
-so. Not reported: what stands in a condition, a loop or a function and is made outside of it; an active object that the
+Operators that look for a modifier do nothing where the active object has none of the name: no error tells so. Not
+reported: what stands in a condition, a loop or a function and is made outside of it; an active object that the
 statements around do not make; and modifiers whose name is computed.
 """
 
@@ -29,8 +33,11 @@ from kb_check.modes.edit_bones import bound_in
 from kb_check.modes.keeping import run_in
 from kb_check.rule import Rule
 from kb_check.running.out_of_sight import computes_names
+from kb_check.running.tried import is_tried
+from kb_check.scene.filled_pointers import FILLING, FilledPointers
 from kb_check.scene.held_objects import COPY, Held, HeldObjects
 from kb_check.syntax.bodies import bodies
+from kb_check.syntax.words import asked_names
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -43,10 +50,33 @@ _ADD = "bpy.ops.object.modifier_add"
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    if computes_names(script) or not any(map(_WORKING.fullmatch, called_operators(script))):
+    if computes_names(script):
         return
+    operators = called_operators(script)
     for body in bodies(script):
-        yield from _missed(script, body)
+        if any(map(_WORKING.fullmatch, operators)):
+            yield from _missed(script, body)
+        if any(map(FILLING.fullmatch, operators)):
+            yield from _left_empty(script, body)
+
+
+def _left_empty(script: Script, body: list[ast.stmt]) -> Iterator[Finding]:
+    """What is read from a pointer of one object that an operator has filled on another one."""
+    pointers = FilledPointers(script, HeldObjects(script))
+    reported: set[str] = set()
+    for statement in body:
+        for node, pointer, filling in pointers.empty(statement):
+            text, owner = ast.unparse(pointer), ast.unparse(pointer.value)
+            if text in reported or pointer.attr in asked_names(script) or is_tried(script, node):
+                continue
+            reported.add(text)
+            yield Finding(
+                RULE.id, "warning", script.span(node),
+                f"`{text}` is None: `{filling}` works on the active object, which `{owner}` has not been when it ran: "
+                f"`bpy.context.view_layer.objects.active = {owner}` comes before.",
+                filling,
+            )  # fmt: skip
+        pointers.pass_by(statement)
 
 
 @dataclass(slots=True)
@@ -139,4 +169,4 @@ def _missed(script: Script, body: list[ast.stmt]) -> Iterator[Finding]:
         modifiers.pass_by(statement)
 
 
-RULE = Rule("other-object", "warning", "An operator that looks for a modifier on another object", _check)
+RULE = Rule("other-object", "warning", "An operator that works on another object than is meant", _check)

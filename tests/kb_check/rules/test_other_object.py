@@ -78,3 +78,45 @@ def test_blender_does_nothing_or_works(tmp_path: Path) -> None:
     ]
     answers = [error for error, *_ in run_statements(tmp_path, [*left, *works])]
     assert [(name, error) for name, error in zip([*_WRONG, *_SOUND], answers, strict=True) if error] == []
+
+
+_ADD = "bpy.ops.rigidbody.object_add()\n"
+_LINKED = "box = bpy.data.objects.new('box', cube.data)\nbpy.context.collection.objects.link(box)\n"
+_EMPTY = {
+    "made by data": f"{_LINKED}{_ADD}box.rigid_body.mass = 2\n",
+    "another one's": f"{_ADD}bpy.ops.mesh.primitive_cone_add()\ncone = bpy.context.object\ncone.rigid_body.mass = 2\n",
+    "the first one's": f"{_ADD}cube.rigid_body.mass = 2\n",
+    "a joint's": f"{_LINKED}bpy.ops.rigidbody.constraint_add(type='HINGE')\nbox.rigid_body_constraint.type = 'POINT'\n",
+}
+_FILLED = {
+    "active": f"{_LINKED}{_ACTIVATE}box\n{_ADD}box.rigid_body.mass = 2\n",
+    "both": f"{_ADD}{_ACTIVATE}cube\n{_ADD}cube.rigid_body.mass = 2\nball.rigid_body.mass = 2\n",
+    "a copy": f"{_ADD}twin = ball.copy()\nbpy.context.collection.objects.link(twin)\ntwin.rigid_body.mass = 2\n",
+    "in a loop": f"for each in (cube, ball):\n    {_ACTIVATE}each\n    {_ADD}cube.rigid_body.mass = 2\n",
+    "by a function": f"def add(ob):\n    {_ACTIVATE}ob\n    {_ADD}{_ADD}add(cube)\ncube.rigid_body.mass = 2\n",
+    "all that is selected": f"{_ADD}bpy.ops.object.select_all(action='SELECT')\nbpy.ops.rigidbody.objects_add()\n"
+    "cube.rigid_body.mass = 2\n",
+    "asked for": f"{_ADD}if cube.rigid_body:\n    cube.rigid_body.mass = 2\n",
+    "overridden": f"{_ADD}with bpy.context.temp_override(object=cube, active_object=cube):\n    {_ADD}"
+    "cube.rigid_body.mass = 2\n",
+}
+
+
+@pytest.mark.parametrize("name", _EMPTY)
+def test_what_an_operator_has_filled_on_another_object_is_found(check: Check, name: str) -> None:
+    assert [finding.severity for finding in check("other-object", f"{_START}{_EMPTY[name]}")] == ["warning"]
+
+
+@pytest.mark.parametrize("name", _FILLED)
+def test_what_is_filled_has_no_finding(check: Check, name: str) -> None:
+    assert check("other-object", f"{_START}{_FILLED[name]}") == []
+
+
+def test_blender_has_none_there_or_some(tmp_path: Path) -> None:
+    answers = [
+        error
+        for error, *_ in run_statements(
+            tmp_path, [f"{_START}{code}" for code in (*_EMPTY.values(), *_FILLED.values())]
+        )
+    ]
+    assert [name for name, error in zip([*_EMPTY, *_FILLED], answers, strict=True) if error] == [*_EMPTY]
