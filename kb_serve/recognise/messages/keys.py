@@ -114,7 +114,7 @@ class Keys:
     def _as_node(self, name: str, query: str, recognition: Recognition) -> None:
         """Adds the nodes that are called so while they are new."""
         nodes = nodes_called(name, query, self._reader)
-        recognition.notes += on_called(name, nodes, self._reader)
+        recognition.notes += on_called(nodes, self._reader)
         for rank, node in enumerate(nodes[:_FEW]):
             recognition.add(node.path, 0.96 - 0.01 * rank, "error message")
 

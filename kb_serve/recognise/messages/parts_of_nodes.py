@@ -28,29 +28,37 @@ _HIDDEN = "`{path}` is there only with `{setting}`."
 
 
 def nodes_called(name: str, query: str, reader: BaseReader) -> list[SymbolEntry]:
-    """The nodes that are called so while they are new, the most important first. Of one word, which may be the name of
-    anything, only in a query that speaks of nodes; those of textures only where there is no other.
+    """The nodes that are called so while they are new, or so but for spaces or capitals, the most important first. By
+    one word, which may be the name of anything, only in a query that speaks of nodes; those of textures only where
+    there is no other.
     """
-    label = _NUMBER.sub("", name)
-    if " " not in label and _NODES.search(query) is None:
-        return []
-    entries = map(reader.entry, (path for _, path in reader.by_key(key(label))))
+    asked = _NUMBER.sub("", name)
+    are_asked = _NODES.search(query) is not None
+    entries = map(reader.entry, dict.fromkeys(path for _, path in reader.by_key(key(asked))))
     found = [
         entry
         for entry in entries
-        if entry and entry.kind == "class" and entry.label == label and reader.descends(entry.path, NODE)
+        if entry
+        and entry.kind == "class"
+        and _is_called(entry.label, asked)
+        and (are_asked or " " in entry.label)
     ]
+    found = [entry for entry in found if reader.descends(entry.path, NODE)]
     others = [entry for entry in found if not entry.path.startswith(_OF_TEXTURES)]
     return reader.heaviest(others or found)
 
 
-def on_called(name: str, nodes: Sequence[SymbolEntry], reader: BaseReader) -> Iterator[str]:
+def _is_called(label: str, name: str) -> bool:
+    """Whether a name is a label or nearly so: an object is called Icosphere, a node Ico Sphere."""
+    return label.casefold() == name.casefold() or label.replace(" ", "") == name
+
+
+def on_called(nodes: Sequence[SymbolEntry], reader: BaseReader) -> Iterator[str]:
     """What is said of a name that new nodes get: of the most important one."""
     made = reader.creations([node.path for node in nodes[:1]])
     for node in nodes[:1]:
         if node.path in made:
-            label = _NUMBER.sub("", name)
-            yield _CALLED.format(node=last_name(node.path), name=label, call=made[node.path].call)
+            yield _CALLED.format(node=last_name(node.path), name=node.label, call=made[node.path].call)
 
 
 def sockets_by_setting(name: str, reader: BaseReader) -> list[Symbol]:

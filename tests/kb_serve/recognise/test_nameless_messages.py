@@ -165,6 +165,11 @@ del ob["x"]
 ob.id_properties_ui("x")
 [o for o in bpy.data.objects if o.type == "FONT"][0]
 bpy.app.timers.register(ob.select_get())
+bpy.ops.wm.stl_import(filepath="/none.stl")
+bpy.ops.wm.usd_import(filepath="/none.usd")
+bpy.ops.import_scene.fbx(filepath="/none.fbx")
+bpy.data.images["Render Result"].pixels[0]
+ob.location.x = "1"
 bpy.types.Scene.made = bpy.props.PointerProperty(type=bpy.types.MeshVertex)
 bpy.types.Scene.made = bpy.props.PointerProperty(type=type("Unknown", (bpy.types.PropertyGroup,), {}))
 bpy.app.timers.unregister(print)

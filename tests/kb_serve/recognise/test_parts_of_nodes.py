@@ -47,10 +47,18 @@ def test_a_key_leads_to_the_node_or_socket_that_has_the_name(
         ("Mix", ""),  # of one word, it may be the name of anything
         ("Cube", 'bpy.data.objects["Cube"]'),
         ("My Material", "nodes"),
+        ("Icosphere", ""),  # what an object is called
     ],
 )
 def test_a_name_of_anything_is_no_nodes(name: str, query: str, kb: KnowledgeBase) -> None:
     assert nodes_called(name, f"{query} {_RAW.format(name)}", kb.reader) == []
+
+
+@pytest.mark.parametrize("name", ["ColorRamp", "color ramp"])
+def test_a_name_without_its_spaces_or_capitals_is_meant(name: str, kb: KnowledgeBase) -> None:
+    answer = kb.query(_RAW.format(name))
+    assert f"{_T}ShaderNodeValToRGB" in {hit.id for hit in answer.hits[:2]}
+    assert any('is called "Color Ramp"' in note for note in answer.notes)
 
 
 def test_a_modifiers_name_is_no_nodes(kb: KnowledgeBase) -> None:

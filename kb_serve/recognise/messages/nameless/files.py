@@ -85,4 +85,19 @@ FILES = (
         "There is no such .blend, or the path lacks the kind of data, and `filepath` alone is not read: "
         '`bpy.ops.wm.append(directory="/folder/name.blend/Object/", filename="Cube")`.',
     ),
+    NamelessMessage(
+        ("STL Import: Cannot open file",),
+        ("bpy.ops.wm.stl_import",),
+        "There is no such file where Blender looks.",
+    ),
+    NamelessMessage(
+        ("USD Import: unable to open stage to read",),
+        ("bpy.ops.wm.usd_import",),
+        "There is no such file where Blender looks, or it is no USD file.",
+    ),
+    NamelessMessage(
+        ("Couldn't open file '", "No such file or directory"),
+        ("bpy.ops.import_scene.fbx", "bpy.path.abspath"),
+        "There is no such file where Blender looks: a relative path begins where Blender was started.",
+    ),
 )

@@ -133,4 +133,10 @@ RENDERING = (
         "Give the strips that it works on: `strips.new_effect(…, input1=first, input2=second)`; one that takes one "
         "strip needs `input1` alone.",
     ),
+    NamelessMessage(
+        ("bpy_prop_array[index]: index ", " out of range"),
+        (f"{T}Image.pixels", f"{T}Image.has_data", f"{T}bpy_prop_array.foreach_get"),
+        "The array has fewer numbers, `len(array)`: `image.pixels` has none where the image has no data (`image.size` "
+        "is 0 × 0), as that called 'Render Result'.",
+    ),
 )

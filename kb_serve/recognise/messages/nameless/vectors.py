@@ -71,4 +71,9 @@ VECTORS = (
         ("mathutils.Vector", "mathutils.Matrix"),
         _NO_FACTOR,
     ),
+    NamelessMessage(
+        ("assigned value not a number",),
+        ("mathutils.Vector",),
+        "One number of a vector is set to something else, as a text or None: `float(value)`.",
+    ),
 )
