@@ -12,7 +12,7 @@ from kb_build.symbols.api_names import OPERATORS, TYPES
 from kb_build.symbols.flags import empty_when_new, fillers
 from kb_build.symbols.records import FILLED_BY, NEVER_NONE, READ_ONLY, RETURNS_NONE
 from kb_serve.recognise.messages.absent import ANY, WEIGHTY, is_empty_when_new
-from kb_serve.recognise.messages.outside_areas import OF_AN_AREA, OUTSIDE
+from kb_serve.recognise.messages.outside_areas import OF_AN_AREA, OUTSIDE, SPACE
 from kb_serve.recognise.resolving.bindings import with_bindings
 from kb_serve.recognise.resolving.chains import find_chains
 
@@ -101,8 +101,13 @@ class NoneBefore:
                 recognition.notes.append(f"`{entry.path}` is None before {before}.")
             elif entry in told and (setting := self._setting(entry)):
                 recognition.notes.append(f"`{entry.path}` is None on what is new: set it, `{setting}`.")
-        if not OF_AN_AREA.isdisjoint(entry.path for entry in likely):
+        if self._is_of_an_area(likely, owners):
             recognition.notes.append(OUTSIDE)
+
+    def _is_of_an_area(self, likely: Sequence[SymbolEntry], owners: set[str]) -> bool:
+        """Whether what may be None is what the context has in an area alone, or mostly what areas show has the name."""
+        spaces = sum(self._reader.descends(f"{TYPES}{owner}", SPACE) for owner in owners)
+        return not OF_AN_AREA.isdisjoint(entry.path for entry in likely) or 2 * spaces > len(owners)
 
     def _tell_of_call(self, name: str, chains: Sequence[Chain], recognition: Recognition) -> bool:
         """Adds the call in the code that gives None, or gave it here; whether there is one."""

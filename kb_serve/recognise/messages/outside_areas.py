@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from kb_build.symbols.api_names import TYPES
 
+SPACE = f"{TYPES}Space"  # what an area shows
 OF_AN_AREA = frozenset(f"{TYPES}Context.{name}" for name in ("area", "region", "region_data", "space_data"))
 OUTSIDE = (
     "`bpy.context` has no `area`, `region`, `region_data` or `space_data` where a script runs in no area, as from the "
