@@ -144,6 +144,7 @@ def readout(facts: dict[str, Any], arguments: SceneStateArguments) -> Result:
             DATA_BLOCKS: blocks["digests"],
             "data_block_parts": blocks["parts"],
             "data_block_uses": blocks["uses"],
+            "data_block_keys": blocks["keys"],
             "tagged": blocks["tagged"],
         }
     return Result(_clipped("\n\n".join(parts), arguments.max_tokens), data)

@@ -364,11 +364,13 @@ class Edited(Event):
     unchanged: Strs = ()
     outside: Strs = ()
     parts: dict[str, tuple[str, ...]] = Field(default_factory=dict[str, tuple[str, ...]])
+    keys: dict[str, tuple[str, ...]] = Field(default_factory=dict[str, tuple[str, ...]])
     why: dict[str, str] = Field(default_factory=dict[str, str])
 
     def note(self, name: str) -> str:
-        """What of a data-block differs; what that follows from."""
-        return "; ".join(filter(None, [", ".join(self.parts.get(name, ())), self.why.get(name, "")]))
+        """What of a data-block differs; which keys, where these are known; what that follows from."""
+        told = [", ".join(self.parts.get(name, ())), *self.keys.get(name, ()), self.why.get(name, "")]
+        return "; ".join(filter(None, told))
 
     def describe(self, name: str) -> str:
         """``Object Spoon (transform)``."""

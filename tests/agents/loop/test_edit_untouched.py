@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from agents.loop.edit.untouched import Blocks, compared
 from agents.loop.task import RunTask
 from agents.plan.edit import EditPlan
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 File = dict[str, dict[str, Any]]
 STILL = {"kind": "still", "engine": "BLENDER_WORKBENCH", "resolution": [64, 36], "samples": 1}
@@ -194,6 +197,32 @@ def test_a_rigid_body_world_is_not_outside_where_something_is_to_move() -> None:
     actor = {"name": "Mug", "deformation_kind": "sim_rigid", "motion_kind": "bake"}
     assert outside(file, plan("Mug", stage="motion", actors=[actor])) == []
     assert outside(file, plan("Mug")) == ["Collection RigidBodyWorld", "Scene Scene"]
+
+
+def test_which_keys_of_an_action_have_changed_is_told_with_their_values() -> None:
+    def file(*keys: Sequence[float], **more: Sequence[Sequence[float]]) -> Blocks:
+        digest = {"Action Gusts": repr((keys, more))}
+        told = {"Action Gusts": {"strength": [list(key) for key in keys]}}
+        told["Action Gusts"] |= {path: [list(key) for key in rows] for path, rows in more.items()}
+        return Blocks(digest, {"Action Gusts": {"keyframes": repr(keys)}}, {}, keys=told)
+
+    asked = plan("Gusts", stage="motion")
+    was = file([1, 2475], [64, 6600], [80, 5500], location=[[1, 0, 0], [9, 1, 2]])
+    now = file([1, 2475], [60, 9909.5], [64, 13200], location=[[1, 0, 0], [9, 1, 2.5]])
+    edit = compared(was, now, asked)
+    assert edit.keys == {
+        "Action Gusts": (
+            "location at 9: 1 2 → 1 2.5",
+            "strength at 60: new 9909.5, at 64: 6600 → 13200, at 80: none",
+        )
+    }
+    assert edit.note("Action Gusts").startswith("keyframes; location at 9: 1 2 → 1 2.5; strength at 60: new")
+    many = file(*([frame, 0] for frame in range(100)))
+    other = file(*([frame, 1] for frame in range(100)))
+    (told,) = compared(many, other, asked).keys["Action Gusts"]
+    assert told.count("→") == 24
+    assert told.endswith(", and 76 more")
+    assert compared(was, Blocks(now.digests, now.parts), asked).keys == {}, "it has too many keys to be told"
 
 
 def test_a_readout_of_an_edit_has_what_it_names_and_what_the_file_did_not_have() -> None:

@@ -17,6 +17,14 @@ def action_curves(player):
     return [curve for bag in bags for curve in bag.fcurves]
 
 
+def curves_by_slot(action):
+    """[(identifier of a slot, "" in older Blenders; its f-curves)] of an action."""
+    if not hasattr(action, "layers"):
+        return [("", list(action.fcurves))]
+    strips = [strip for layer in action.layers for strip in layer.strips if strip.type == "KEYFRAME"]
+    return [(bag.slot.identifier, list(bag.fcurves)) for strip in strips for bag in strip.channelbags]
+
+
 def curves_of(block):
     """The f-curves of a data-block's own action."""
     return action_curves(getattr(block, "animation_data", None))

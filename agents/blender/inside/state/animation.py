@@ -5,7 +5,8 @@ from array import array
 
 import bpy
 
-from ..blend.fcurves import action_curves
+from ..blend.fcurves import action_curves, curves_by_slot
+from .block_reader import key_of
 from .rna_values import number, numbers, text
 
 MOST_KEYS = 500_000  # of one readout whose values are read
@@ -142,9 +143,7 @@ def _action(animated, keys, detail):
     elif getattr(action, "slots", None):
         entry["slot"] = None
     curves = action_curves(animated)
-    groups = {}
-    for curve in curves:
-        groups.setdefault(curve.data_path, []).append(curve)
+    groups = _by_path(curves)
     entry["curves"] = len(curves)
     entry["keys"] = sum(len(curve.keyframe_points) for curve in curves)
     ranges = [curve.range() for curve in curves if not curve.is_empty]
@@ -193,6 +192,28 @@ def _channel(path, curves, keys, detail):
     if detail != "summary":
         entry.update(_interpolation(held))
     return entry
+
+
+def action_keys():
+    """{"Action Swing": {path: [[frame, value of each curve], …]}} of the file's actions, as far as keys are few."""
+    told = {}
+    for action in bpy.data.actions:
+        slots = curves_by_slot(action)
+        keys = {
+            f"{slot}: {path}" if len(slots) > 1 else path: rows
+            for slot, curves in slots
+            for path, rows in _points(_by_path(curves)).items()
+        }
+        if keys:
+            told[key_of(action)] = keys
+    return told
+
+
+def _by_path(curves):
+    groups = {}
+    for curve in curves:
+        groups.setdefault(curve.data_path, []).append(curve)
+    return groups
 
 
 def _points(groups):

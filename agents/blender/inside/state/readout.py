@@ -11,7 +11,7 @@ from simworlds.sandbox.inside.refusal import Refused
 from ..blend.names import nearest
 from ..blend.protocol_tags import ROLE
 from ..readout_sections import DATA_BLOCKS, SECTIONS
-from .animation import animation_facts, unused_actions
+from .animation import action_keys, animation_facts, unused_actions
 from .appearance import camera_facts, light_facts, material_facts, render_facts, world_facts
 from .fingerprint import data_blocks
 from .likely_mistakes import notes_of
@@ -39,8 +39,9 @@ def scene_state(arguments, report):
     meshes of several parts are to be measured part by part.
 
     Returns {section: entries} with ``scene``, ``notes``, ``chosen`` (how many objects) and ``unread``: of each
-    section, how many entries were left out. ``data_blocks`` is as ``fingerprint.data_blocks`` returns it, and
-    whether any collection is ``tagged`` by the scene protocol. Raises Refused for a name that the scene does not have.
+    section, how many entries were left out. ``data_blocks`` is as ``fingerprint.data_blocks`` returns it, with the
+    ``keys`` of actions that have few, and whether any collection is ``tagged`` by the scene protocol. Raises Refused
+    for a name that the scene does not have.
     """
     reading = _Reading(arguments, report)
     facts = {"scene": _scene_facts(reading), "chosen": len(reading.chosen), "unread": {}}
@@ -56,7 +57,7 @@ def scene_state(arguments, report):
         facts[section] = entries
     if DATA_BLOCKS in arguments["sections"]:
         tagged = any(collection.get(ROLE) for collection in bpy.data.collections)
-        facts[DATA_BLOCKS] = {**data_blocks(report), "tagged": tagged}
+        facts[DATA_BLOCKS] = {**data_blocks(report), "keys": action_keys(), "tagged": tagged}
     if len(reading.chosen) > MOST_OBJECTS and "objects" in facts:
         facts["unread"]["objects"] = len(reading.chosen) - MOST_OBJECTS
     facts["notes"] = [*notes_of(reading.scene, reading.layer, reading.chosen, facts), *reading.remarks]

@@ -86,6 +86,9 @@ def test_digests_cover_exactly_what_a_file_keeps(scene: LiveSession) -> None:
     assert not [name for name in found.data["data_blocks"] if "Lost" in name]
     assert "3 Object" in found.text
     assert found.data["data_block_uses"]["Object Cube"]["data"] == ["Mesh Cube"]
+    keys = found.data["data_block_keys"]
+    assert {"Action CameraAction", "Action GlazeAction"} <= keys.keys() <= found.data["data_blocks"].keys()
+    assert [frame for frame, *_ in keys["Action CameraAction"]["location"]] == [1, 20]
     assert found.data["tagged"] is False
     assert "data_blocks" not in scene.use(TOOL).data
 
