@@ -388,6 +388,11 @@ def test_particles_come_to_rest_on_a_floor_and_stay(blender: LiveSession) -> Non
     assert max(speed for _, speed in grains) < 0.1
 
 
+def test_particles_that_are_born_before_the_first_frame_fall_through(blender: LiveSession) -> None:
+    grains = tried(blender, "particles", PARTICLES.replace("end=12", "start=-30, end=12"))
+    assert min(height for height, _ in grains) < -1
+
+
 def test_settings_that_sheets_name_are_there(blender: LiveSession) -> None:
     prose = "\n".join(_RECIPE.sub("", sheet(solver)) for solver in SOLVERS)
     named = set(re.findall(r"`(?:\w+\.)*([a-z]+(?:_[a-z]+)+)`", prose)) - {tool.name for tool in TOOLS}

@@ -47,14 +47,15 @@ class FallWatch:
     """Which particles of a system have gone through one ``floor``.
 
     A particle has gone through if it is under the floor, was not before, and the straight way between crosses it: one
-    that was blown over an edge and came back below has crossed nothing.
+    that was blown over an edge and came back below has crossed nothing. While the floor moves, nothing is judged: it
+    may have passed over the particle.
     """
 
     def __init__(self, cache, floor):
         self._cache, self._floor = cache, floor
         self._clear = {}  # number of a particle → where it was last with nothing of the floor above it
         self._seen, self._early, self._fallen = set(), set(), set()
-        self._first = None
+        self._first = self._still = None
 
     def add(self, frame, graph):
         """Looks at the particles at a frame, the next after the one that was added."""
@@ -65,7 +66,10 @@ class FallWatch:
         floor = self._floor.evaluated_get(graph)
         self._step = -(-len(system.particles) // _FOLLOWED)
         inverse = floor.matrix_world.inverted_safe()
-        low, high = _box(floor)
+        low, high = box = _box(floor)
+        if self._still is not None and not numpy.array_equal(box, self._still):
+            self._clear.clear()
+        self._still = box
         places = coordinates(system.particles, "location").astype(float)
         inside = ((places[:, :2] >= low[:2]) & (places[:, :2] <= high[:2]) & (places[:, 2:] <= high[2])).all(
             1

@@ -141,6 +141,17 @@ def test_a_swarm_has_a_strip_of_pictures_of_its_own(session: LiveSession) -> Non
     assert rows.min() > heights[1] / 2, "the swarm is in the strip below"
 
 
+def test_a_thing_that_comes_in_among_falling_particles_has_not_let_them_through(session: LiveSession) -> None:
+    session.run(
+        RAIN.format(start=1, partner=COLLIDES)
+        + "floor.location = (50, 0, 0.5)\nfloor.keyframe_insert('location', frame=11)\n"
+        "floor.location.x = 0\nfloor.keyframe_insert('location', frame=12)"
+    )
+    found = session.use(TOOL, frames=16, pictures=False)
+    assert found.data["actors"][0]["lowest"][0] < 0, "some have fallen past before it came"
+    assert found.data["fallen"] == []
+
+
 @pytest.mark.parametrize(
     ("start", "partner", "cause"),
     [
