@@ -61,7 +61,7 @@ def test_make_ends_with_a_scene_a_picture_and_a_report(
     assert out.splitlines() == [str(root / name) for name in ("scene.blend", "still.png", "report.html")]
     assert "A crate stands on a floor" in (root / "report.html").read_text()
     assert "\x1b" not in err
-    assert "camera" in err
+    assert "Camera closed" in err
 
 
 def test_a_stage_that_cannot_be_closed_is_exit_code_1(home: Path, tmp_path: Path) -> None:
