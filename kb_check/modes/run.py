@@ -155,9 +155,8 @@ class _Run:
             case ast.Match():
                 subject = self._expressions([node.subject], state)
                 after = self._all_ways([case.body for case in node.cases], State(muted=subject.muted))
-            case ast.Assign():
-                evaluated = self._expressions([node.value, *node.targets], state)
-                after = self._stores(node, evaluated)
+            case ast.Assign():  # the value comes first
+                after = self._stores(node, self._expressions([node.value, *node.targets], state))
             case _:
                 after = self._simple(node, self._stores(node, self._expressions([node], state)))
         return without_active(self.script, node, after) if after else None

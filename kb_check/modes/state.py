@@ -145,9 +145,9 @@ def refusal(script: Script, call: CallSite, state: State) -> str:
     return ""
 
 
-def keeps_active(path: str) -> bool:
-    """Whether an operator leaves the same object active in its mode, and the same ones selected."""
-    return _KEEPING.fullmatch(path) is not None
+def keeps_active(path: str, *, is_edited: bool) -> bool:
+    """Whether an operator leaves the same object active in its mode, which may be Edit Mode, and what is selected."""
+    return bool(_KEEPING.fullmatch(path) or (is_edited and _EDITING.fullmatch(path)))
 
 
 def lacks_active(call: CallSite, state: State) -> bool:

@@ -12,7 +12,10 @@ for collection in ball.users_collection:
 ball.select_set(True)  # reported: it is in no collection any more
 ```
 
-Blender refuses each, since no view layer has the object; ``hide_set(True)`` too. Not reported: objects that the
+Blender refuses each, since no view layer has the object; ``hide_set(True)`` too. A new collection that a script fills,
+and gives to nothing, is a warning: what is in it shows nowhere.
+
+Not reported: objects that the
 statements between may have linked: those that name the object, or its collection, otherwise than to read from it, or
 that link what they find or call what is not known; and what stands in a ``try``.
 """
@@ -32,11 +35,13 @@ from kb_check.findings import Finding
 from kb_check.modes.edit_bones import bound_in, names_of_others, surely_run
 from kb_check.modes.keeping import is_harmless, run_in
 from kb_check.rule import Rule
-from kb_check.running.out_of_sight import computes_names
+from kb_check.running.out_of_sight import computes_names, knows_all
 from kb_check.running.tried import is_tried
 from kb_check.scene.made_here import OBJECTS_NEW
+from kb_check.script import once_per_script
 from kb_check.syntax.bindings import bindings
 from kb_check.syntax.bodies import bodies
+from kb_check.syntax.words import asked_names, attributes, named_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -50,6 +55,8 @@ _MAKING = frozenset({OBJECTS_NEW, _COLLECTIONS_NEW, _COPY})
 _REFUSED = frozenset({f"{OBJECT}.select_set", f"{OBJECT}.hide_set"})
 
 
+# What a script names that makes use of a collection which no scene has.
+_USING = frozenset({"libraries", "asset_mark", "use_fake_user", "collection_instance_add"})
 # Name of an object → the names of the collections that have it, which no scene has.
 _Unlinked = dict[str, set[str]]
 
@@ -57,12 +64,13 @@ _Unlinked = dict[str, set[str]]
 def _check(script: Script) -> Iterator[Finding]:
     if computes_names(script):
         return
+    told: set[str] = set()  # collections
     for body in bodies(script):
         unlinked: _Unlinked = {}
         collections: set[str] = set()
         for statement in body:
             if unlinked:
-                yield from _refused(script, statement, unlinked)
+                yield from _refused(script, statement, unlinked, told)
             if (link := _link(statement)) and link[0] in collections and link[1] in unlinked:
                 unlinked[link[1]].add(link[0])
                 continue
@@ -80,6 +88,64 @@ def _check(script: Script) -> Iterator[Finding]:
                 unlinked[name] = set()
             elif name := _makes_collection(script, statement):
                 collections.add(name)
+    yield from _never_linked(script, told)
+
+
+def _never_linked(script: Script, told: set[str]) -> Iterator[Finding]:
+    """New collections that get objects, of which a script does nothing else than to read from them."""
+    made = [
+        node
+        for node in script.all(ast.Assign)
+        if (name := _makes_collection(script, node)) and not _is_given(script, name)
+    ]
+    if not made or not knows_all(script) or not _USING.isdisjoint(named_words(script)):
+        return
+    looked_up = [node for node in attributes(script).get("collections", ()) if node not in _made_from(script)]
+    for node in made if not looked_up else ():
+        name = _makes_collection(script, node)
+        objects = [held for held, places in _linked(script).items() if f"{name}.objects" in places]
+        is_alone = objects and all(
+            len(_linked(script)[held]) == 1 and _is_new(script, held) for held in objects
+        )
+        if is_alone and name not in told:
+            yield Finding(
+                RULE.id, "warning", script.span(node.value),
+                f"`{name}` is linked to no scene, so what is linked to it shows nowhere: "
+                f"`bpy.context.scene.collection.children.link({name})` does.",
+                _COLLECTIONS_NEW,
+            )  # fmt: skip
+
+
+def _is_given(script: Script, name: str) -> bool:
+    """Whether a name is bound more than once, or used for more than to read from it."""
+    return name in asked_names(script) or len(bindings(script).get(name, ())) != 1
+
+
+@once_per_script
+def _linked(script: Script) -> dict[str, set[str]]:
+    """Name → what it is linked to, as that is written."""
+    found: dict[str, set[str]] = {}
+    for node in script.all(ast.Call):
+        match node:
+            case ast.Call(func=ast.Attribute(value=place, attr="link"), args=[ast.Name(id=name)]):
+                found.setdefault(name, set()).add(ast.unparse(place))
+            case _:
+                pass
+    return found
+
+
+def _is_new(script: Script, name: str) -> bool:
+    """Whether a name holds nothing but what is made for it alone."""
+    return all(_is_made(script, value) for value in bindings(script).get(name, [None]))
+
+
+def _made_from(script: Script) -> set[ast.expr]:
+    """The places that name ``bpy.data.collections`` to make one."""
+    return {
+        node.func.value
+        for node in script.all(ast.Call)
+        if isinstance(node.func, ast.Attribute) and callee_path(script, node) == _COLLECTIONS_NEW
+    }
 
 
 def _makes(script: Script, statement: ast.stmt) -> str:
@@ -143,7 +209,7 @@ def _link(statement: ast.stmt) -> tuple[str, str] | None:
             return None
 
 
-def _refused(script: Script, statement: ast.stmt, unlinked: _Unlinked) -> Iterator[Finding]:
+def _refused(script: Script, statement: ast.stmt, unlinked: _Unlinked, told: set[str]) -> Iterator[Finding]:
     for node in (statement, *surely_run(statement)):
         match node:
             case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr=what)):
@@ -158,6 +224,7 @@ def _refused(script: Script, statement: ast.stmt, unlinked: _Unlinked) -> Iterat
                 continue
         if is_refused and name in unlinked and not is_tried(script, place):
             having = sorted(unlinked.pop(name))  # once is enough
+            told.update(having)
             where = f"only in `{having[0]}`, which no scene has" if having else "in no collection"
             linking = (
                 f"`bpy.context.scene.collection.children.link({having[0]})`"
@@ -200,7 +267,7 @@ def _links_unknown(script: Script, call: ast.Call) -> bool:
     """Whether a call links something that may be any object: not one that a name holds which is made for it alone."""
     match call:
         case ast.Call(func=ast.Attribute(attr="link"), args=[ast.Name(id=name)], keywords=[]):
-            return not all(_is_made(script, value) for value in bindings(script).get(name, [None]))
+            return not _is_new(script, name)
         case ast.Call(func=ast.Attribute(attr="link")):
             return True
         case _:

@@ -210,7 +210,7 @@ class HeldObjects:
             self.selected = set()
         elif path == JOIN:
             self._join()
-        elif not keeps_active(path) and not (self._is_edited and path.startswith("bpy.ops.mesh.")):
+        elif not keeps_active(path, is_edited=self._is_edited):
             self._forget()
 
     def _join(self) -> None:

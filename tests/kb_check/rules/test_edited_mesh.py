@@ -51,6 +51,10 @@ _LOST = {
     "all at once": ("mesh.vertices.foreach_set('co', [9.0] * 24)", "mesh.vertices[0].co.x == 9"),
     "material": ("mesh.polygons[0].material_index = 1", "mesh.polygons[0].material_index"),
     "seam": ("mesh.edges[0].use_seam = True", "mesh.edges[0].use_seam"),
+    "flipped": (
+        "normal = mesh.polygons[0].normal.copy()\nmesh.flip_normals()",
+        "mesh.polygons[0].normal != normal",
+    ),
     "cleared": ("mesh.clear_geometry()", "not mesh.vertices"),
 }
 _SOUND = {
@@ -61,6 +65,11 @@ _SOUND = {
     ),
     "left by a function": (
         "def leave():\n    bpy.ops.object.mode_set(mode='OBJECT')\nleave()\nmesh.vertices[0].select = True",
+        "mesh.vertices[0].select",
+    ),
+    "after other operators": (
+        "bpy.ops.uv.cube_project()\nbpy.ops.mesh.subdivide()\nbpy.ops.object.mode_set(mode='OBJECT')\n"
+        "mesh.vertices[0].select = True",
         "mesh.vertices[0].select",
     ),
     "another mesh": (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import pytest
 from statements_in_blender import run_statements
 
 if TYPE_CHECKING:
@@ -93,3 +94,48 @@ def test_what_runs_has_no_finding(check: Check, tmp_path: Path) -> None:
     answers = run_statements(tmp_path, [f"{_START}{code}" for code in _SOUND.values()])
     assert [(name, error) for name, (error, *_) in zip(_SOUND, answers, strict=True) if error] == []
     assert [name for name, code in _SOUND.items() if check("unlinked-object", f"{_START}{code}")] == []
+
+
+_SHOWN = "ob.name in bpy.context.scene.objects"
+_NEVER = {
+    "never linked": _IN_PROPS,
+    "of a function": "def make(name):\n"
+    "    rest = bpy.data.collections.new(name)\n    ob = bpy.data.objects.new(name, None)\n    rest.objects.link(ob)\n"
+    "make('ob')",
+    "named": f"{_IN_PROPS}props.name = 'a'\nprint(props.name)",
+}
+_SHOWING = {
+    "linked": f"{_IN_PROPS}{_LINK_PROPS}",
+    "linked by its name": f"{_IN_PROPS}bpy.context.scene.collection.children.link(bpy.data.collections['props'])",
+    "linked as one of all": f"{_IN_PROPS}for one in bpy.data.collections:\n"
+    "    if one.name == 'props':\n        bpy.context.scene.collection.children.link(one)",
+    "linked by a helper": f"def show(which):\n    {_LINK_PROPS.replace('props', 'which')}{_IN_PROPS}show(props)",
+    "in the active one before": f"bpy.ops.mesh.primitive_cube_add()\nob = bpy.context.object\n{_IN_PROPS}",
+    "in both": f"{_PROPS}objects.link(ob)\nbpy.context.scene.rigidbody_world and props.name",
+}
+
+
+def test_a_collection_that_is_never_linked_is_found(check: Check, tmp_path: Path) -> None:
+    shown = [f"{_START}{code}\nassert {_SHOWN}" for code in _SHOWING.values()]
+    hidden = [f"{_START}{code}\nassert not {_SHOWN}" for code in _NEVER.values()]
+    answers = [error for error, *_ in run_statements(tmp_path, [*shown, *hidden])]
+    assert [(name, error) for name, error in zip([*_SHOWING, *_NEVER], answers, strict=True) if error] == []
+    found = {name: check("unlinked-object", f"{_START}{code}\n") for name, code in _NEVER.items()}
+    severities = [[finding.severity for finding in findings] for findings in found.values()]
+    assert severities == [["warning"]] * len(_NEVER)
+    assert [name for name, code in _SHOWING.items() if check("unlinked-object", f"{_START}{code}\n")] == []
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        f"{_IN_PROPS}other.instance_type = 'COLLECTION'\nother.instance_collection = props",
+        f"{_IN_PROPS}props.asset_mark()",
+        f"{_IN_PROPS}bpy.context.scene.rigidbody_world.collection = props",
+        f"{_IN_PROPS}bpy.ops.object.collection_instance_add(collection='props')",
+        f"{_IN_PROPS}kept = [props]",
+        _PROPS,
+    ],
+)
+def test_a_collection_that_is_used_otherwise_has_no_finding(check: Check, code: str) -> None:
+    assert check("unlinked-object", f"{_START}{code}\n") == []
