@@ -133,13 +133,13 @@ def _is_run(value: ast.expr, own: frozenset[str]) -> bool:
 
 
 def is_operator(call: ast.Call) -> bool:
-    """Whether what is called is written as an operator, or as something of one."""
+    """Whether what is called is written as an operator of Blender, or as something of one."""
     node = call.func
     names: list[str] = []
     while isinstance(node, ast.Attribute):
         names.append(node.attr)
         node = node.value
-    return isinstance(node, ast.Name) and (names[-1:] == ["ops"] or node.id == "ops")
+    return isinstance(node, ast.Name) and node.id != "bmesh" and (names[-1:] == ["ops"] or node.id == "ops")
 
 
 @once_per_script

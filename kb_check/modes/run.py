@@ -331,7 +331,7 @@ class _Run:
         if refusal(self.script, call, state):
             return state
         if lacks_active(call, state):
-            return _present(state)  # once is enough
+            state = _present(state)  # once is enough
         return replace(after_operator(call, state), muted=state.muted)
 
     def _see(self, node: ast.expr, state: State) -> None:

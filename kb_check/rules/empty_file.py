@@ -133,7 +133,7 @@ def _check(script: Script) -> Iterator[Finding]:
 
 
 def _emptied(what: What) -> str:
-    return "in an empty file" if what == "file" else "when all objects are deleted"
+    return "in an empty file" if what == "file" else "once all objects are gone"
 
 
 def _read(script: Script, empty: Container[str]) -> Iterator[PointerRead]:

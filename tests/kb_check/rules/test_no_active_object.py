@@ -40,6 +40,9 @@ _WRONG = {
     "join": f"{_EMPTY}bpy.ops.object.join()",
     "made, not active": f"{_DELETE}ob = bpy.data.objects.new('a', None)\nbpy.context.collection.objects.link(ob)\n"
     f"ob.select_set(True)\n{_READ}",
+    "a mesh was made": f"import bmesh\n{_DELETE}mesh = bpy.data.meshes.new('a')\nbm = bmesh.new()\n"
+    "bmesh.ops.create_cube(bm)\nbm.to_mesh(mesh)\nbm.free()\nob = bpy.data.objects.new('a', mesh)\n"
+    "bpy.context.collection.objects.link(ob)\nbpy.ops.object.mode_set(mode='EDIT')",
     "in functions": f"def clear():\n{_INNER}def build():\n    {_READ}\nclear()\nbuild()",
     "data purged": f"{_DELETE}for mesh in bpy.data.meshes:\n    if not mesh.users:\n"
     "        bpy.data.meshes.remove(mesh)\n"
@@ -112,3 +115,9 @@ def test_a_hidden_object_stays_active(check: Check, tmp_path: Path) -> None:
     hidden = f"{_START}bpy.context.object.hide_set(True)\n{_DELETE}{_READ}"
     assert run_statements(tmp_path, [hidden])[0][0] == ""
     assert [finding.severity for finding in check("no-active-object", hidden)] == ["warning"]
+
+
+def test_what_follows_is_read_as_if_it_ran(check: Check) -> None:
+    code = f"{_START}{_DELETE}bpy.ops.object.mode_set(mode='EDIT')\nbpy.ops.mesh.subdivide()\n"
+    assert len(check("no-active-object", code)) == 1
+    assert check("wrong-mode", code) == []
