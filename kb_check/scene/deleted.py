@@ -13,6 +13,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.resolved import callee_path, member_path
 from kb_check.script import once_per_script
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _DELETE, _SELECT = "bpy.ops.object.delete", "bpy.ops.object.select_all"
+_SELECT_SET = f"{OBJECT}.select_set"
 _REMOVE = f"{T}BlendDataObjects.remove"
 _ALL = frozenset({f"{T}BlendData.objects", f"{T}Scene.objects"})
 _SCENE = f"{T}Context.scene"
@@ -50,6 +52,19 @@ def deleting_all(script: Script) -> frozenset[ast.stmt]:
 def _is_behind_selecting(script: Script, statement: ast.Expr) -> bool:
     body, place = places(script)[statement]
     match body[place - 1] if place else None:
+        case ast.For(
+            target=ast.Name(id=name),
+            iter=gone_through,
+            body=[
+                ast.Expr(
+                    value=ast.Call(
+                        func=ast.Attribute(value=ast.Name(id=selected)), args=[ast.Constant(value=True)]
+                    ) as call
+                )
+            ],
+        ):
+            is_selecting = name == selected and callee_path(script, call) == _SELECT_SET
+            return is_selecting and _is_all(script, gone_through)
         case (
             ast.Expr(
                 value=ast.Call(

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from conftest import Check
 
 _START = "import bpy\nbpy.ops.wm.read_factory_settings()\n"
-_DELETE = "bpy.ops.object.select_all(action='SELECT')\nbpy.ops.object.delete()\n"
+_DELETE_SELECTED = "bpy.ops.object.delete()\n"
+_DELETE = f"bpy.ops.object.select_all(action='SELECT')\n{_DELETE_SELECTED}"
 _INNER = indent(_DELETE, "    ")
 _REMOVE = "for one in list(bpy.data.objects):\n    bpy.data.objects.remove(one, do_unlink=True)\n"
 _EMPTY = "bpy.ops.wm.read_factory_settings(use_empty=True)\n"
@@ -24,6 +25,7 @@ _WRONG = {
     "deleted": f"{_DELETE}{_READ}",
     "deleted, also of other scenes": f"bpy.ops.object.select_all(action='SELECT')\n"
     f"bpy.ops.object.delete(use_global=True)\n{_READ}",
+    "selected one by one": f"for one in bpy.data.objects:\n    one.select_set(True)\n{_DELETE_SELECTED}{_READ}",
     "removed": f"{_REMOVE}{_READ}",
     "removed of the scene": f"for one in bpy.context.scene.objects:\n    bpy.data.objects.remove(one)\n{_READ}",
     "removed of a slice": f"for one in bpy.data.objects[:]:\n    bpy.data.objects.remove(one)\n{_READ}",
@@ -61,6 +63,8 @@ _SOUND = {
     "deselected only": f"bpy.ops.object.select_all(action='DESELECT')\nbpy.ops.object.delete()\n{_READ}",
     "some are deleted": "bpy.data.objects['Light'].select_set(True)\nbpy.data.objects['Cube'].select_set(False)\n"
     f"bpy.ops.object.delete()\n{_READ}",
+    "some are selected": "for one in bpy.data.objects:\n    one.select_set(one.type != 'MESH')\n"
+    f"{_DELETE_SELECTED}{_READ}",
     "some are removed": "for one in bpy.data.objects:\n    if one.type != 'MESH':\n"
     "        bpy.data.objects.remove(one)\n"
     f"{_READ}",
@@ -92,7 +96,7 @@ _SOUND = {
 @pytest.mark.parametrize("name", _WRONG)
 def test_what_lacks_an_active_object_is_found(check: Check, name: str) -> None:
     findings = check("no-active-object", f"{_START}{_WRONG[name]}\n")
-    expected = "warning" if _DELETE.splitlines()[0] in _WRONG[name] and _NONE not in _WRONG[name] else "error"
+    expected = "warning" if "object.delete(" in _WRONG[name] and _NONE not in _WRONG[name] else "error"
     assert [finding.severity for finding in findings] == [expected]
 
 
