@@ -149,15 +149,24 @@ def _set_of(script: Script, target: ast.expr) -> tuple[ast.expr | None, str]:
 
 
 def _mesh_of(script: Script, element: ast.expr) -> ast.expr | None:
+    """The mesh that an element is of: one by index, or those that loops over the elements of one mesh go through."""
     match element:
-        case ast.Subscript(value=ast.Attribute(value=mesh, attr=name)) if name in _ELEMENTS:
+        case ast.Subscript(value=elements):
+            return _mesh_with(elements)
+        case ast.Name(id=name):
+            through = iterated(script).get(name, [])
+            meshes = [_mesh_with(elements) for elements in through]
+            texts = {ast.unparse(mesh) if mesh else "" for mesh in meshes}
+            is_one = len(texts) == 1 and len(through) == len(bindings(script).get(name, ()))
+            return meshes[0] if is_one else None
+        case _:
+            return None
+
+
+def _mesh_with(elements: ast.expr) -> ast.expr | None:
+    match elements:
+        case ast.Attribute(value=mesh, attr=name) if name in _ELEMENTS:
             return mesh
-        case ast.Name(id=name) if len(bindings(script).get(name, ())) == 1:
-            match iterated(script).get(name):
-                case [ast.Attribute(value=mesh, attr=elements)] if elements in _ELEMENTS:
-                    return mesh
-                case _:
-                    return None
         case _:
             return None
 

@@ -45,6 +45,10 @@ _LOST = {
         "for face in mesh.polygons:\n    if face.normal.z > 0.5:\n        face.select = True",
         "any(face.select for face in mesh.polygons)",
     ),
+    "in two loops": (
+        "for face in mesh.polygons:\n    print(face.index)\nfor face in mesh.polygons:\n    face.select = True",
+        "mesh.polygons[0].select",
+    ),
     "moved": ("mesh.vertices[0].co.x = 9", "mesh.vertices[0].co.x == 9"),
     "moved by item": ("mesh.vertices[0].co[0] = 9", "mesh.vertices[0].co.x == 9"),
     "added to": ("mesh.vertices[0].co.x += 9", "mesh.vertices[0].co.x > 5"),
@@ -90,6 +94,11 @@ _SOUND = {
         "bm = bmesh.from_edit_mesh(mesh)\nbm.verts.ensure_lookup_table()\nbm.verts[0].co.x = 9\n"
         "bmesh.update_edit_mesh(mesh)",
         "mesh.vertices[0].co.x == 9",
+    ),
+    "in a loop over another mesh, too": (
+        "other = bpy.data.objects['Cube'].data\nfor face in mesh.polygons:\n    print(face.index)\n"
+        "for face in other.polygons:\n    face.use_smooth = True",
+        "other.polygons[0].use_smooth",
     ),
     "in a loop that leaves": (
         "for n in range(2):\n    bpy.ops.object.mode_set(mode='OBJECT')\n    mesh.vertices[n].co.x = 9",
