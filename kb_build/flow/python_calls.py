@@ -140,8 +140,10 @@ class PythonCalls(ScriptCalls):
         match name.rpartition(".")[2]:
             case "choice":
                 return first
-            case "choices" | "sample" | "cycle" | "islice":
+            case "choices" | "sample":
                 return Sequence("list", first)
+            case "cycle" | "islice":
+                return Sequence("iterator", first)
             case "deque":
                 return Sequence("deque", first, is_empty=not call.node.args)
             case "combinations" | "permutations":

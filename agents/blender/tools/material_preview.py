@@ -63,8 +63,7 @@ class MaterialArguments(Arguments):
 
 DESCRIPTION = """\
 See materials as they render (Cycles, the file's shaders and textures) in neutral light, without lamps. \
-Shows the scene through its camera, or in three-quarter view, and each object alone, one that is far larger than \
-others close up too: up to a minute a picture."""
+Shows the scene through its camera, or in three-quarter view, and each object alone: up to a minute a picture."""
 
 
 def run(context: ToolContext, arguments: MaterialArguments, call: Call) -> Result:

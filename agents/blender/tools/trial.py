@@ -46,7 +46,7 @@ class TrialArguments(Arguments):
         default=None,
         min_length=1,
         max_length=12,
-        description="Default: all; of more than 12, those that move most.",
+        description="Default: those that move most.",
     )
     # Not for models, which name the objects: of many, these are told of before others, if they are simulated.
     first: SkipJsonSchema[list[str]] = Field(default_factory=list[str], max_length=_MOST_FIRST)
@@ -57,8 +57,8 @@ class TrialArguments(Arguments):
 
 DESCRIPTION = """\
 Try a simulation before you bake it: steps some frames; tells heights, speed, volume and depth in what it touches of \
-each object, of particles how many, where, which way, and what they fall through; and what the bake will take; shows \
-small pictures. Stops where it is not finite, with the likely cause. \
+each object, how many particles, and what the bake will take; shows small pictures. \
+Stops where it is not finite. \
 What was simulated is kept for the bake. Baked simulations are played: free them first."""
 
 

@@ -194,6 +194,29 @@ RIGHT = {
         first(True)
         first(False).lens = 35
     """,
+    "some of what passes by": """
+        from itertools import islice
+        for instance in islice(bpy.context.evaluated_depsgraph_get().object_instances, 3):
+            instance.matrix_world
+    """,
+    "a list that two names hold": """
+        first = second = []
+        second.append(cam)
+        first.append(new("a"))
+        first[0].lens = 35
+    """,
+    "a list that an object holds, too": """
+        class Builder:
+            def __init__(self):
+                held = []
+                self.held = held
+                held.append(cam)
+            def add(self):
+                self.held.append(new("a"))
+        builder = Builder()
+        builder.add()
+        builder.held[0].lens = 35
+    """,
     "a list of an object's that a function fills": """
         def fill(held):
             held.append(cam)
