@@ -244,8 +244,11 @@ class AnswerComposer:
         that do, and as much more as is short; a short page to its end. Sections that only say in which panel something
         is are not counted, nor are the names that stand with labels: they must not take the place of what was asked.
         """
-        blocks = [block for block in self._whole(hit, row, asked) if not _says_nothing(block.text)]
-        is_short = hit.is_page and sum(tokens(block.plain or block.text) for block in blocks) <= _SHORT_PAGE
+        blocks = self._whole(hit, row, asked)
+        is_short = False
+        if hit.is_page:
+            blocks = [block for block in blocks if not _says_nothing(block.text)]
+            is_short = sum(tokens(block.plain or block.text) for block in blocks) <= _SHORT_PAGE
         said = 0
         for number, block in enumerate(blocks):
             size = tokens(block.plain or block.text)
