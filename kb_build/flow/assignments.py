@@ -9,7 +9,6 @@ from kb_build.flow.expressions import is_math
 from kb_build.flow.facts import DISCRIMINANTS
 from kb_build.flow.guards import Guards
 from kb_build.flow.scopes import chain_text, item_text
-from kb_build.flow.type_parts import HOLDING, given_away
 from kb_build.flow.types import (
     NONE,
     UNKNOWN,
@@ -46,19 +45,12 @@ class Assignments(Guards, Annotations):
         """Reads ``name = value``."""
         kind = self.evaluate(node.value)
         if len(node.targets) > 1 or isinstance(node.value, (ast.Name, ast.Attribute)):
-            kind = self._shared(kind, node.value)
+            kind = self.give_away(node.value, kind)
         for target in node.targets:
             self.bind_target(target, kind, node.value)
             if isinstance(target, ast.Name):
                 self._note_asked(target.id, node.value)
         return True
-
-    def _shared(self, kind: Type, value: ast.expr) -> Type:
-        """What is held in two places: what is empty in one may be filled by the other."""
-        if not isinstance(kind, HOLDING) or (given := given_away(kind)) == kind:
-            return kind
-        self.fill(value, given)
-        return given
 
     def _note_asked(self, name: str, value: ast.expr) -> None:
         """Notes ``name = hasattr(owner, "member")`` and ``name = getattr(owner, "member", default)``."""

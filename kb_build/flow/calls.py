@@ -13,7 +13,6 @@ from kb_build.flow.facts import leaves_active, made_by
 from kb_build.flow.python_calls import PythonCalls
 from kb_build.flow.read_calls import ReadCall
 from kb_build.flow.script_calls import ScriptCalls
-from kb_build.flow.type_parts import HOLDING, given_away
 from kb_build.flow.types import (
     NONE,
     UNKNOWN,
@@ -63,9 +62,7 @@ class Calls(ApiCalls, PythonCalls):
         if not any(isinstance(one, (Unknown, LocalFunction, LocalClass)) for one in members(callee)):
             return
         for node in (*call.node.args, *(keyword.value for keyword in call.node.keywords)):
-            kind = self.here.types.get(node, UNKNOWN)
-            if isinstance(kind, HOLDING) and (given := given_away(kind)) != kind:
-                self.fill(node, given)
+            self.give_away(node, self.here.types.get(node, UNKNOWN))
 
     def _active_after(self, callee: Type, call: ReadCall) -> Type | None:
         """The active object behind a call, where an operator has made it and nothing may have changed that."""

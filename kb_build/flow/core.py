@@ -11,6 +11,7 @@ from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
 from kb_build.flow.doubts import NO_DOUBTS, Doubts
 from kb_build.flow.place import Place
 from kb_build.flow.source_files import SourceFile
+from kb_build.flow.type_parts import HOLDING, given_away
 from kb_build.flow.types import (
     UNKNOWN,
     Builtin,
@@ -334,6 +335,13 @@ class Core:
                     self.fill(holder, outer)
             case _:
                 pass
+
+    def give_away(self, node: ast.expr, kind: Type) -> Type:
+        """What is held in a second place, too: what is empty may be filled there."""
+        if not isinstance(kind, HOLDING) or (given := given_away(kind)) == kind:
+            return kind
+        self.fill(node, given)
+        return given
 
     def _holding(self, holder: ast.expr, key: ast.expr, filled: Type) -> Type | None:
         """What holds a list or a dictionary, once that is ``filled``; None for what is neither."""

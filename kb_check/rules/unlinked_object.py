@@ -44,7 +44,7 @@ from kb_check.syntax.bodies import bodies
 from kb_check.syntax.words import asked_names, attributes, named_words
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from kb_check.script import Script
 
@@ -84,9 +84,9 @@ def _check(script: Script) -> Iterator[Finding]:
                     for name, having in unlinked.items()
                     if name not in taken and having.isdisjoint(taken)
                 }
-            if name := _makes(script, statement) or unlinking:
+            if name := _makes(script, statement, _is_object) or unlinking:
                 unlinked[name] = set()
-            elif name := _makes_collection(script, statement):
+            elif name := _makes(script, statement, _is_collection):
                 collections.add(name)
     yield from _never_linked(script, told)
 
@@ -94,15 +94,15 @@ def _check(script: Script) -> Iterator[Finding]:
 def _never_linked(script: Script, told: set[str]) -> Iterator[Finding]:
     """New collections that get objects, of which a script does nothing else than to read from them."""
     made = [
-        node
+        (name, node)
         for node in script.all(ast.Assign)
-        if (name := _makes_collection(script, node)) and not _is_given(script, name)
+        if (name := _makes(script, node, _is_collection)) and not _is_given(script, name)
     ]
     if not made or not knows_all(script) or not _USING.isdisjoint(named_words(script)):
         return
-    looked_up = [node for node in attributes(script).get("collections", ()) if node not in _made_from(script)]
-    for node in made if not looked_up else ():
-        name = _makes_collection(script, node)
+    if not _made_from(script).issuperset(attributes(script).get("collections", ())):  # some are looked up
+        return
+    for name, node in made:
         objects = [held for held, places in _linked(script).items() if f"{name}.objects" in places]
         is_alone = objects and all(
             len(_linked(script)[held]) == 1 and _is_new(script, held) for held in objects
@@ -144,29 +144,29 @@ def _made_from(script: Script) -> set[ast.expr]:
     return {
         node.func.value
         for node in script.all(ast.Call)
-        if isinstance(node.func, ast.Attribute) and callee_path(script, node) == _COLLECTIONS_NEW
+        if isinstance(node.func, ast.Attribute) and _is_collection(script, node)
     }
 
 
-def _makes(script: Script, statement: ast.stmt) -> str:
-    """The name of the new object that a statement makes; empty for none."""
+def _makes(script: Script, statement: ast.stmt, is_making: Callable[[Script, ast.Call], bool]) -> str:
+    """The name that a statement gives to what a call makes; empty for none that is the script's own."""
     match statement:
-        case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call() as call):
-            path, kind = callee_path(script, call), script.type_of(call)
-            is_copy = path == _COPY and isinstance(kind, Instance) and kind.sure and kind.cls == OBJECT
-            return name if (path == OBJECTS_NEW or is_copy) and name not in names_of_others(script) else ""
+        case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call() as call) if is_making(script, call):
+            return name if name not in names_of_others(script) else ""
         case _:
             return ""
 
 
-def _makes_collection(script: Script, statement: ast.stmt) -> str:
-    """The name of the new collection that a statement makes; empty for none."""
-    match statement:
-        case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call() as call):
-            is_new = callee_path(script, call) == _COLLECTIONS_NEW
-            return name if is_new and name not in names_of_others(script) else ""
-        case _:
-            return ""
+def _is_object(script: Script, call: ast.Call) -> bool:
+    """Whether a call makes an object."""
+    path, kind = callee_path(script, call), script.type_of(call)
+    is_copy = path == _COPY and isinstance(kind, Instance) and kind.sure and kind.cls == OBJECT
+    return path == OBJECTS_NEW or is_copy
+
+
+def _is_collection(script: Script, call: ast.Call) -> bool:
+    """Whether a call makes a collection."""
+    return callee_path(script, call) == _COLLECTIONS_NEW
 
 
 def _unlinks(script: Script, statement: ast.stmt) -> str:

@@ -11,7 +11,7 @@ from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.flags import fillers
 from kb_check.calls.resolved import callee_path, member_path
 from kb_check.modes.keeping import is_harmless, run_in
-from kb_check.scene.held_objects import COPY, Held, HeldObjects
+from kb_check.scene.held_objects import Held, HeldObjects
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,7 +30,6 @@ class FilledPointers:
     script: Script
     objects: HeldObjects
     _filled: dict[str, set[Held]] = field(default_factory=dict[str, set[Held]])
-    _copies: set[Held] = field(default_factory=set[Held])
     _is_open: bool = False  # what is not known may have made some such
 
     def empty(self, statement: ast.stmt) -> Iterator[tuple[ast.expr, ast.Attribute, str]]:
@@ -60,17 +59,9 @@ class FilledPointers:
             elif path.startswith(_MODULE) or not (path or is_harmless(self.script, node)):
                 self._is_open = True
         self.objects.pass_by(statement)
-        match statement:
-            case ast.Assign(targets=[target], value=ast.Call() as call) if (
-                callee_path(self.script, call) == COPY
-            ):
-                if held := self.objects.thing(target):
-                    self._copies.add(held)
-            case _:
-                pass
 
     def _lacks(self, held: Held, path: str) -> bool:
-        return held.is_new and held not in self._filled[path] and held not in self._copies
+        return held.is_new and not held.is_copy and held not in self._filled[path]
 
 
 def _filling(script: Script, pointer: str) -> str:

@@ -41,13 +41,15 @@ _JOINED = frozenset({_MESH, "CURVE", "SURFACE", "ARMATURE"})
 class Held:
     """An object: the number of the statement at which it became known, and what it is looked up by.
 
-    ``is_new`` says that it was made there. ``key`` is its name in ``bpy.data``, ``kind`` its type; empty for unknown.
+    ``is_new`` says that it was made there, ``is_copy`` of another object. ``key`` is its name in ``bpy.data``, ``kind``
+    its type; empty for unknown.
     """
 
     number: int
     is_new: bool = False
     key: str = ""
     kind: str = ""
+    is_copy: bool = False
 
     def is_another(self, other: Held) -> bool:
         """Whether two surely are two."""
@@ -150,7 +152,7 @@ class HeldObjects:
             case ast.Call(func=ast.Attribute(value=owner)) if callee_path(self.script, value) == COPY and (
                 original := self.thing(owner)
             ):
-                return Held(self._number, is_new=True, kind=original.kind)
+                return Held(self._number, is_new=True, kind=original.kind, is_copy=True)
             case ast.Attribute() if self._reads_active(value) and self.active is None:
                 self.active = Held(self._number)
                 return self.active
