@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from simworlds.sandbox import confine_self
-from simworlds.sandbox.confined_command import Sandbox, best_sandbox, bubblewrap_fault
-from simworlds.sandbox.worker_user import worker_id
+from simworlds.sandbox.confinement import confine_self
+from simworlds.sandbox.confinement.confined_command import Sandbox, best_sandbox, bubblewrap_fault
+from simworlds.sandbox.confinement.worker_user import worker_id
 
 if TYPE_CHECKING:
-    from simworlds.sandbox.confined_command import Kind
-    from simworlds.sandbox.resource_limits import ResourceLimits
+    from simworlds.sandbox.confinement.confined_command import Kind
+    from simworlds.sandbox.confinement.resource_limits import ResourceLimits
 
 
 def skip_unless_it_works(kind: Kind) -> Kind:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from agents.blender.assets.library import AssetLibrary
     from agents.blender.tools.base import BlenderTool, Call, Knowledge, Result
-    from simworlds.sandbox.confined_command import Sandbox
+    from simworlds.sandbox.confinement.confined_command import Sandbox
 
 CLOSE_SECONDS = 5.0
 _LEAVE_SECONDS = 60.0  # to close one session while the server runs: a large scene takes long to write

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from simworlds.sandbox.confined_command import Sandbox, best_sandbox
+from simworlds.sandbox.confinement.confined_command import Sandbox, best_sandbox
 from simworlds.sandbox.launch import LENT, PRIVATE, Launch, find_blender
 from simworlds.sandbox.program import SHARED, Program
 from simworlds.settings import home_folder

@@ -23,7 +23,7 @@ from simworlds.sandbox.errors import (
     Refusal,
     ToolBroke,
 )
-from simworlds.sandbox.picture_decoder import PictureDecoder
+from simworlds.sandbox.pictures.picture_decoder import PictureDecoder
 from simworlds.sandbox.replies import Reader, T, nothing
 
 if TYPE_CHECKING:

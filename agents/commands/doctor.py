@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rich.text import Text
 
     from agents.commands.doctor_checks import BlenderChoice, DoctorResult, State
-    from simworlds.sandbox.confined_command import Kind
+    from simworlds.sandbox.confinement.confined_command import Kind
     from simworlds.terminal.console import Console
 
 _NEEDED = ("Blender", "Start", "Sandbox")  # without these Blender cannot work, or must not

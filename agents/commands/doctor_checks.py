@@ -25,21 +25,21 @@ from simworlds.how_to_get_bases import how_to_get
 from simworlds.operating_system import SYSTEM
 from simworlds.own_command import own_command
 from simworlds.releases import USUAL, release, version_key
-from simworlds.sandbox.confined_command import best_sandbox, bubblewrap_fault
+from simworlds.sandbox.confinement.confined_command import best_sandbox, bubblewrap_fault
+from simworlds.sandbox.confinement.resource_limits import GIB
+from simworlds.sandbox.confinement.walls import WALLS, WITHOUT
 from simworlds.sandbox.errors import BlenderError, CannotStart, NotInstalled
 from simworlds.sandbox.launch import find_blender
 from simworlds.sandbox.replies import mapping
-from simworlds.sandbox.resource_limits import GIB
 from simworlds.sandbox.shader_cache import are_kept
-from simworlds.sandbox.walls import WALLS, WITHOUT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
 
-    from simworlds.sandbox.confined_command import Kind, Sandbox
+    from simworlds.sandbox.confinement.confined_command import Kind, Sandbox
+    from simworlds.sandbox.confinement.walls import Wall
     from simworlds.sandbox.launch import Launch
     from simworlds.sandbox.runtime import Runtime
-    from simworlds.sandbox.walls import Wall
 
 State = Literal["good", "poor", "bad"]
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from agents.blender.blender_sessions import BlenderSessions, SessionSetup
     from agents.blender.tool_profiles import Profile
-    from simworlds.sandbox.confined_command import Kind, Sandbox
+    from simworlds.sandbox.confinement.confined_command import Kind, Sandbox
 
 _ERROR = 2
 _PORT = 8766
@@ -327,8 +327,8 @@ def _same_blender(setup: SessionSetup) -> list[str]:
 
 def _confined(wanted: Kind | None, *, announced: bool) -> Sandbox:
     """The sandbox, described on stderr if ``announced``. Raises CannotStart if the wanted one does not work here."""
-    from simworlds.sandbox.confine_self import landlock_abi  # noqa: PLC0415 - not for --help
-    from simworlds.sandbox.confined_command import best_sandbox, bubblewrap_fault  # noqa: PLC0415
+    from simworlds.sandbox.confinement.confine_self import landlock_abi  # noqa: PLC0415 - not for --help
+    from simworlds.sandbox.confinement.confined_command import best_sandbox, bubblewrap_fault  # noqa: PLC0415
     from simworlds.sandbox.errors import CannotStart  # noqa: PLC0415
 
     if wanted == "bubblewrap" and (fault := bubblewrap_fault()) is not None:

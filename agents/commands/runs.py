@@ -288,7 +288,7 @@ def _begin(asked: dict[str, Any], given: dict[str, Any]) -> None:
     except ValidationError as error:
         raise click.UsageError(every_fault(error)) from error
     from agents.commands.sandbox_warning import warn  # noqa: PLC0415 - not for --help
-    from simworlds.sandbox.confined_command import best_sandbox  # noqa: PLC0415
+    from simworlds.sandbox.confinement.confined_command import best_sandbox  # noqa: PLC0415
 
     root = _root(given)
     warn(best_sandbox(options.sandbox))

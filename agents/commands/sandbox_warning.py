@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from simworlds.sandbox.confined_command import Sandbox
+    from simworlds.sandbox.confinement.confined_command import Sandbox
 
 
 def warn(sandbox: Sandbox) -> None:

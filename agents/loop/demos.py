@@ -12,7 +12,7 @@ from agents.loop.errors import NoRun, RunError
 from agents.loop.options import BEFORE_DRAFTS
 from agents.loop.record.reducer import read_run_state
 from agents.loop.running.tool_client import ToolClient
-from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.confinement.confined_command import best_sandbox
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -37,7 +37,7 @@ from simworlds.llm.errors import Misfit, ModelError, OverBudget
 from simworlds.llm.spending import Spending
 from simworlds.operating_system import SYSTEM
 from simworlds.own_command import own_command
-from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.confinement.confined_command import best_sandbox
 from simworlds.sandbox.errors import Refusal
 from simworlds.sandbox.launch import find_blender
 

@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 from bench.audit.inside import LARGEST_REPLY
 from simworlds.formats.blend_file import HEAD, begins_blend
 from simworlds.sandbox.blender_process import BlenderProcess
-from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.confinement.confined_command import best_sandbox
+from simworlds.sandbox.confinement.resource_limits import GIB, ResourceLimits
 from simworlds.sandbox.errors import (
     CannotStart,
     Lost,
@@ -31,7 +32,6 @@ from simworlds.sandbox.hostile_ground import HostileGround
 from simworlds.sandbox.launch import Launch, find_blender
 from simworlds.sandbox.program import SHARED, Program
 from simworlds.sandbox.replies import unread
-from simworlds.sandbox.resource_limits import GIB, ResourceLimits
 
 if TYPE_CHECKING:
     from types import TracebackType

@@ -1,9 +1,9 @@
 """A task's scenes in a confined Blender: makes the one to be edited from the raw file, and renders results.
 
 A raw file must not be used before its ``start.py`` has run: that of a camera task already holds the goal's camera.
-Both the code and the files are untrusted. They run and are opened in a sandbox
-(``simworlds/sandbox/confined_command.py``): no network, nothing written but to a folder that goes with the process, a
-deadline, limits of memory and disk.
+Both the code and the files are untrusted. They run and are opened in a sandbox (see
+simworlds/sandbox/confinement/confined_command.py): no network, nothing written but to a folder that goes with the
+process, a deadline, limits of memory and disk.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from bench.audit.untrusted_blend import AUDITOR
 from bench.blenderbench.errors import TaskFailed, UnreadableRender
 from bench.blenderbench.pictures import read_picture
 from simworlds.sandbox.blender_process import BlenderProcess
-from simworlds.sandbox.confined_command import best_sandbox, default_limits
+from simworlds.sandbox.confinement.confined_command import best_sandbox, default_limits
+from simworlds.sandbox.confinement.resource_limits import ResourceLimits
 from simworlds.sandbox.errors import BlenderError, CannotStart
 from simworlds.sandbox.hostile_ground import HostileGround
 from simworlds.sandbox.launch import PRIVATE, Launch, find_blender
 from simworlds.sandbox.program import Program
 from simworlds.sandbox.replies import unread
-from simworlds.sandbox.resource_limits import ResourceLimits
 
 if TYPE_CHECKING:
     from collections.abc import Generator

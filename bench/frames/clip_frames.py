@@ -19,9 +19,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from bench.audit.untrusted_blend import BlenderOptions, NotScored, UntrustedBlend
 from bench.frames import video
 from simworlds.files import write_whole
-from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.confinement.confined_command import best_sandbox
 from simworlds.sandbox.errors import Refusal
-from simworlds.sandbox.picture_decoder import PictureDecoder
+from simworlds.sandbox.pictures.picture_decoder import PictureDecoder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

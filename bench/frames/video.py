@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 
 from bench.audit.untrusted_blend import NotScored
 from simworlds.processes import CommandFailed, CommandTimedOut, run_group
-from simworlds.sandbox.confined_command import best_sandbox, own_python
-from simworlds.sandbox.resource_limits import GIB, ResourceLimits
+from simworlds.sandbox.confinement.confined_command import best_sandbox, own_python
+from simworlds.sandbox.confinement.resource_limits import GIB, ResourceLimits
 from simworlds.sandbox.runtime import clean_environment
 
 if TYPE_CHECKING:

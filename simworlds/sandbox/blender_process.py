@@ -47,7 +47,7 @@ from simworlds.sandbox.replies import (
     parse_message,
     parse_value,
 )
-from simworlds.sandbox.watched_process import WatchedProcess, innermost_process
+from simworlds.sandbox.watch.watched_process import WatchedProcess, innermost_process
 
 if TYPE_CHECKING:
     import threading

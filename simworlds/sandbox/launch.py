@@ -9,19 +9,19 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from simworlds.sandbox.control_group import ControlGroup, group_parents
+from simworlds.sandbox.confinement.control_group import ControlGroup, group_parents
 from simworlds.sandbox.errors import CannotStart, NotInstalled, RuntimeMissing
 from simworlds.sandbox.program import BOOT, Program
 from simworlds.sandbox.runtime import Runtime, clean_environment, find_runtime
 from simworlds.sandbox.shader_cache import IN_ONE_FILE, lend_shaders
-from simworlds.sandbox.usage import UsageMonitor
+from simworlds.sandbox.watch.usage import UsageMonitor
 from simworlds.settings import home_folder
 from simworlds.terminal.progress import shown_progress
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from simworlds.sandbox.confined_command import Sandbox
+    from simworlds.sandbox.confinement.confined_command import Sandbox
     from simworlds.sandbox.hostile_ground import HostileGround
 
 PRIVATE = "private"  # the name of a folder for temporary files, beside the workspace

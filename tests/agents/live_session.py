@@ -14,7 +14,7 @@ from simworlds.sandbox.replies import unread
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from simworlds.sandbox.confined_command import Sandbox
+    from simworlds.sandbox.confinement.confined_command import Sandbox
 
 
 def no_docs(query: str, *, max_tokens: int = 400) -> str:

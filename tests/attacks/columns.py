@@ -11,8 +11,8 @@ from hosts import WHO
 from table import WAYS
 from way import KINDS
 
-from simworlds.sandbox import confine_self
-from simworlds.sandbox.confined_command import bubblewrap_fault
+from simworlds.sandbox.confinement import confine_self
+from simworlds.sandbox.confinement.confined_command import bubblewrap_fault
 
 if TYPE_CHECKING:
     from _pytest.mark.structures import ParameterSet

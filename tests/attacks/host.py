@@ -21,10 +21,10 @@ from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
 from agents.blender.tool_catalogue import BY_NAME
 from agents.blender.tools.base import Call, ToolContext, parse, perform
-from simworlds.sandbox.confined_command import Sandbox, best_sandbox
+from simworlds.sandbox.confinement.confined_command import Sandbox, best_sandbox
+from simworlds.sandbox.confinement.resource_limits import ResourceLimits
 from simworlds.sandbox.errors import BlenderError
 from simworlds.sandbox.program import SHARED, Program
-from simworlds.sandbox.resource_limits import ResourceLimits
 
 MIB = 1 << 20
 LIMITS = ResourceLimits(memory=1600 * MIB, file_size=128 * MIB, disk=64 * MIB, files=400, threads=300)

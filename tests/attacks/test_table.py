@@ -11,7 +11,7 @@ from outside import rights_of
 from table import WAYS
 from way import KINDS, Server
 
-from simworlds.sandbox.walls import WALLS
+from simworlds.sandbox.confinement.walls import WALLS
 
 if TYPE_CHECKING:
     from attack import Attackers

@@ -8,7 +8,7 @@ import pytest
 from columns import host_for, said
 from table import WAYS
 
-from simworlds.sandbox.walls import WALLS
+from simworlds.sandbox.confinement.walls import WALLS
 
 if TYPE_CHECKING:
     from attack import Attackers

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from agents.blender.supervisor import Supervisor
     from simworlds.sandbox.blender_process import BlenderProcess
     from simworlds.sandbox.hostile_ground import HostileGround
-    from simworlds.sandbox.picture_decoder import PictureDecoder
+    from simworlds.sandbox.pictures.picture_decoder import PictureDecoder
 
 Kind = Literal["object", "collection", "material", "world", "node_group", "textures", "hdri"]
 Told = Callable[[float, float | None, str], None]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from agents.blender.attached.attached_blender import AttachedBlender
     from agents.blender.run_folder import RunFolder
-    from simworlds.sandbox.confined_command import Sandbox
+    from simworlds.sandbox.confinement.confined_command import Sandbox
     from simworlds.sandbox.runtime import Runtime
 
 COPY_SECONDS = 5.0

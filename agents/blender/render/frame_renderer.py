@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from agents.blender.render.replies import Shot, UnbakedCache
     from agents.blender.supervisor import Supervisor
     from agents.blender.tools.base import Call
-    from simworlds.sandbox.picture_decoder import PictureDecoder
+    from simworlds.sandbox.pictures.picture_decoder import PictureDecoder
 
 _STEP_SECONDS = 20.0  # of stepping through a simulation in one call
 _LONGEST = 400  # characters of the note about a lost Blender

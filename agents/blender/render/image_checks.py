@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from PIL import Image
 
     from agents.blender.render.picture_numbers import PictureNumbers
-    from simworlds.sandbox.picture_decoder import PictureDecoder
+    from simworlds.sandbox.pictures.picture_decoder import PictureDecoder
 
 LARGEST_PREVIEW, LARGEST_STILL = 768, 1568  # pixels a side, of one of many and of a picture alone
 _DARK = 6  # of 255

@@ -10,10 +10,10 @@ from PIL import Image, ImageChops
 
 from agents.blender.sheets.contact_sheet import Panel, grid, sheet, to_png
 from simworlds.llm.messages import Picture, Text
-from simworlds.sandbox.confined_command import best_sandbox
-from simworlds.sandbox.decode_pictures import FORMATS
+from simworlds.sandbox.confinement.confined_command import best_sandbox
 from simworlds.sandbox.errors import Refusal
-from simworlds.sandbox.picture_decoder import PictureDecoder
+from simworlds.sandbox.pictures.decode_pictures import FORMATS
+from simworlds.sandbox.pictures.picture_decoder import PictureDecoder
 
 if TYPE_CHECKING:
     from agents.loop.running.run import Run

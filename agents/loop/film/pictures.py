@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from agents.blender.render.image_checks import LARGEST_STILL, look_at
 from simworlds.llm.messages import Picture
-from simworlds.sandbox.confined_command import best_sandbox
-from simworlds.sandbox.picture_decoder import PictureDecoder
+from simworlds.sandbox.confinement.confined_command import best_sandbox
+from simworlds.sandbox.pictures.picture_decoder import PictureDecoder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -13,10 +13,10 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
-from simworlds.sandbox.confined_command import best_sandbox
-from simworlds.sandbox.decode_pictures import FORMATS
+from simworlds.sandbox.confinement.confined_command import best_sandbox
 from simworlds.sandbox.errors import BlenderError
-from simworlds.sandbox.picture_decoder import PictureDecoder
+from simworlds.sandbox.pictures.decode_pictures import FORMATS
+from simworlds.sandbox.pictures.picture_decoder import PictureDecoder
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

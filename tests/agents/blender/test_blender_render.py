@@ -21,9 +21,9 @@ from agents.blender.render.render_budget import LEAST, RenderBudget
 from agents.blender.render.render_loop import render_frames
 from agents.blender.tools.base import Call, Result
 from agents.blender.tools.render import TOOL
-from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.confinement.confined_command import best_sandbox
 from simworlds.sandbox.errors import Refusal
-from simworlds.sandbox.picture_decoder import PictureDecoder
+from simworlds.sandbox.pictures.picture_decoder import PictureDecoder
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -21,10 +21,10 @@ from whole import by_turns
 from agents.commands import doctor_checks
 from simworlds.installed import installed_bpy
 from simworlds.own_command import own_command
-from simworlds.sandbox import confine_self
-from simworlds.sandbox.confined_command import Sandbox, best_sandbox, bubblewrap_fault
+from simworlds.sandbox.confinement import confine_self
+from simworlds.sandbox.confinement.confined_command import Sandbox, best_sandbox, bubblewrap_fault
+from simworlds.sandbox.confinement.walls import WALLS, WITHOUT, Wall
 from simworlds.sandbox.runtime import Runtime
-from simworlds.sandbox.walls import WALLS, WITHOUT, Wall
 
 pytestmark = pytest.mark.blender
 

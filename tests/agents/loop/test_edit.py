@@ -19,7 +19,7 @@ from agents.loop.record.events import read_event
 from agents.loop.record.reducer import read_run_state
 from agents.loop.running.tool_client import ToolClient
 from agents.views.event_lines import format_event
-from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.confinement.confined_command import best_sandbox
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -8,7 +8,7 @@ import pytest
 
 from agents.blender.blender_sessions import SessionSetup
 from agents.loop.running.tool_client import ToolClient
-from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.confinement.confined_command import best_sandbox
 
 if TYPE_CHECKING:
     from pathlib import Path

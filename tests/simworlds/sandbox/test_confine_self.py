@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from simworlds.sandbox import confine_self
-from simworlds.sandbox.system_calls import OWN_PROCESS, first_filter, installing_call, last_filter
+from simworlds.sandbox.confinement import confine_self
+from simworlds.sandbox.confinement.system_calls import OWN_PROCESS, first_filter, installing_call, last_filter
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="Linux confines this way")
 

@@ -9,9 +9,14 @@ from pathlib import Path
 
 import pytest
 
-from simworlds.sandbox import control_group
-from simworlds.sandbox.control_group import ControlGroup, GroupParents, find_parents, group_parents
-from simworlds.sandbox.resource_limits import ResourceLimits
+from simworlds.sandbox.confinement import control_group
+from simworlds.sandbox.confinement.control_group import (
+    ControlGroup,
+    GroupParents,
+    find_parents,
+    group_parents,
+)
+from simworlds.sandbox.confinement.resource_limits import ResourceLimits
 
 LIMITS = ResourceLimits(memory=300 << 20, threads=40)
 
@@ -131,8 +136,8 @@ def test_what_still_runs_in_a_group_ends_with_it(group: ControlGroup) -> None:
 
 def test_groups_of_a_killed_owner_are_removed_by_the_next(group: ControlGroup) -> None:
     code = (
-        "import os\nfrom simworlds.sandbox.resource_limits import ResourceLimits\n"
-        "from simworlds.sandbox.control_group import ControlGroup, group_parents\n"
+        "import os\nfrom simworlds.sandbox.confinement.resource_limits import ResourceLimits\n"
+        "from simworlds.sandbox.confinement.control_group import ControlGroup, group_parents\n"
         "group = ControlGroup(ResourceLimits(memory=1 << 30), group_parents())\ngroup.renew()\n"
         "print(*group.folders, flush=True)\nos.kill(os.getpid(), 9)\n"
     )

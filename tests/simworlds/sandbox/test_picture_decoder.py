@@ -14,11 +14,11 @@ import pytest
 from PIL import Image
 from sandboxes import sandbox_of, skip_unless_it_works
 
-from simworlds.sandbox import picture_decoder
-from simworlds.sandbox.confined_command import best_sandbox
-from simworlds.sandbox.decode_pictures import FORMATS, PICTURE
+from simworlds.sandbox.confinement.confined_command import best_sandbox
 from simworlds.sandbox.errors import Refusal
-from simworlds.sandbox.picture_decoder import PictureDecoder
+from simworlds.sandbox.pictures import picture_decoder
+from simworlds.sandbox.pictures.decode_pictures import FORMATS, PICTURE
+from simworlds.sandbox.pictures.picture_decoder import PictureDecoder
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

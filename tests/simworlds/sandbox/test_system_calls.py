@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from simworlds.sandbox.confine_self import MACHINES
-from simworlds.sandbox.system_call_numbers import ARCHITECTURES, NEWEST, NUMBERS
-from simworlds.sandbox.system_calls import OWN_PROCESS, first_filter, installing_call, last_filter
+from simworlds.sandbox.confinement.confine_self import MACHINES
+from simworlds.sandbox.confinement.system_call_numbers import ARCHITECTURES, NEWEST, NUMBERS
+from simworlds.sandbox.confinement.system_calls import OWN_PROCESS, first_filter, installing_call, last_filter
 
 OWN = OWN_PROCESS
 ALLOWED, REFUSED, UNKNOWN, PRETENDED, KILLED = "allowed", "EPERM", "ENOSYS", "nothing", "killed"
@@ -30,7 +30,7 @@ ANSWERS = {
     0x80000000: KILLED,
 }
 if TYPE_CHECKING:
-    from simworlds.sandbox.walls import Wall
+    from simworlds.sandbox.confinement.walls import Wall
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="Linux confines this way")
 

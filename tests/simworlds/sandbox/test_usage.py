@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from simworlds.sandbox import usage
+from simworlds.sandbox.confinement.resource_limits import ResourceLimits
 from simworlds.sandbox.hostile_ground import HostileGround
-from simworlds.sandbox.resource_limits import ResourceLimits
+from simworlds.sandbox.watch import usage
 
 if TYPE_CHECKING:
     from pathlib import Path

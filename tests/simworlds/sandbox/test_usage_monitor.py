@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from simworlds.sandbox import usage
+from simworlds.sandbox.confinement.resource_limits import ResourceLimits
 from simworlds.sandbox.hostile_ground import DiskUsage, HostileGround
-from simworlds.sandbox.nameless_files import nameless_files
-from simworlds.sandbox.resource_limits import ResourceLimits
-from simworlds.sandbox.watched_process import WatchedProcess
+from simworlds.sandbox.watch import usage
+from simworlds.sandbox.watch.nameless_files import nameless_files
+from simworlds.sandbox.watch.watched_process import WatchedProcess
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from simworlds.sandbox import confine_self
-from simworlds.sandbox.confined_command import bubblewrap_fault
-from simworlds.sandbox.worker_user import WORKER_ID
+from simworlds.sandbox.confinement import confine_self
+from simworlds.sandbox.confinement.confined_command import bubblewrap_fault
+from simworlds.sandbox.confinement.worker_user import WORKER_ID
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from simworlds.sandbox.walls import Wall
+    from simworlds.sandbox.confinement.walls import Wall
 
 pytestmark = pytest.mark.skipif(not confine_self.has_seccomp(), reason="system calls cannot be closed here")
 
@@ -29,9 +29,9 @@ AS_USER = ("unshare", "--user", "--map-user=1000", "--map-group=1000")
 DRIVER = """
 import json, os, socket, subprocess, sys
 from pathlib import Path
-from simworlds.sandbox.confined_command import best_sandbox
-from simworlds.sandbox.resource_limits import ResourceLimits
-from simworlds.sandbox.control_group import ControlGroup, group_parents
+from simworlds.sandbox.confinement.confined_command import best_sandbox
+from simworlds.sandbox.confinement.resource_limits import ResourceLimits
+from simworlds.sandbox.confinement.control_group import ControlGroup, group_parents
 from simworlds.sandbox.errors import CannotStart
 from simworlds.sandbox.program import BOOT, SHARED, Program
 

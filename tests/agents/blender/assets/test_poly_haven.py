@@ -21,7 +21,7 @@ from agents.blender.assets.map_names import texture_sets
 from agents.blender.assets.poly_haven import PolyHaven
 from agents.blender.blender_sessions import BlenderSessions, SessionSetup
 from agents.commands.mcp import mcp
-from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.confinement.confined_command import best_sandbox
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from agents.blender.jobs import SessionJobs
 from agents.blender.server import make_server
 from agents.blender.tools.base import Call, Result, parse
 from agents.blender.tools.job import TOOL, WORK, JobArguments
-from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.confinement.confined_command import best_sandbox
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:

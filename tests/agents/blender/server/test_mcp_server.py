@@ -28,7 +28,7 @@ from agents.blender.docs_client import DocsClient
 from agents.blender.tool_catalogue import TOOLS
 from agents.blender.tool_profiles import DEFAULT, is_within
 from agents.blender.tools import execute
-from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.confinement.confined_command import best_sandbox
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator

@@ -17,7 +17,7 @@ from agents.blender.docs_client import DocsClient
 from agents.blender.team import PROMPTS
 from agents.plan.part import STAGES
 from agents.roles.prompts import protocol_text, role_text, stage_text, team_text
-from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.confinement.confined_command import best_sandbox
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator

@@ -21,7 +21,7 @@ from agents.blender.server import make_server
 from agents.blender.team import Team
 from agents.blender.tool_catalogue import TOOLS
 from agents.blender.tool_profiles import DEFAULT, PROFILES
-from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.confinement.confined_command import best_sandbox
 from simworlds.schemas.json_schema import lean_arguments
 
 if TYPE_CHECKING:

@@ -14,10 +14,10 @@ from processes import of_run
 from agents.blender import checkpoints
 from agents.blender.checkpoints import KEPT, Checkpoint
 from agents.blender.tools.execute import TOOL
-from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.confinement.confined_command import best_sandbox
+from simworlds.sandbox.confinement.resource_limits import ResourceLimits
 from simworlds.sandbox.errors import Died, Refusal
 from simworlds.sandbox.replies import unread
-from simworlds.sandbox.resource_limits import ResourceLimits
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -18,14 +18,14 @@ from places import REPO
 from sandboxes import sandbox_of, skip_unless_it_works
 
 from agents.blender.tools.execute import TOOL
-from simworlds.sandbox import confine_self
+from simworlds.sandbox.confinement import confine_self
+from simworlds.sandbox.confinement.resource_limits import ResourceLimits
 from simworlds.sandbox.errors import Died, LeftBehind, LimitExceeded, Refusal, Untrustworthy
-from simworlds.sandbox.resource_limits import ResourceLimits
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from simworlds.sandbox.confined_command import Kind
+    from simworlds.sandbox.confinement.confined_command import Kind
 
 pytestmark = [
     pytest.mark.blender,

@@ -22,7 +22,7 @@ from agents.blender.supervisor import Supervisor
 from agents.blender.tools.base import ToolContext
 from agents.blender.tools.files import LOAD, SAVE
 from simworlds.sandbox.blender_process import BlenderProcess
-from simworlds.sandbox.confined_command import best_sandbox, default_limits
+from simworlds.sandbox.confinement.confined_command import best_sandbox, default_limits
 from simworlds.sandbox.errors import Refusal
 from simworlds.sandbox.hostile_ground import HostileGround
 from simworlds.sandbox.replies import unread

@@ -462,7 +462,7 @@ import sys
 sys.path[:0] = [{tests!r}]
 from pathlib import Path
 from live_session import LiveSession
-from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.confinement.confined_command import best_sandbox
 from simworlds.sandbox.errors import LimitExceeded
 from agents.blender.tools.execute import TOOL
 from agents.blender.tools.motion_sheet import TOOL as MOTION_SHEET

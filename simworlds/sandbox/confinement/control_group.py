@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Literal
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from simworlds.sandbox.resource_limits import ResourceLimits
+    from simworlds.sandbox.confinement.resource_limits import ResourceLimits
 
 _NAME = "simworlds-{owner}-{number}"
 _NAMES = re.compile(r"simworlds-(\d+)-\d+")

@@ -14,17 +14,17 @@ from typing import TYPE_CHECKING, cast
 from PIL import Image
 
 from simworlds.processes import end_group, spawn
-from simworlds.sandbox import decode_pictures
-from simworlds.sandbox.confined_command import own_python
-from simworlds.sandbox.decode_pictures import FAULT, FORMATS, LONGEST_FAULT, PICTURE, REQUEST
+from simworlds.sandbox.confinement.confined_command import own_python
+from simworlds.sandbox.confinement.resource_limits import GIB, ResourceLimits
 from simworlds.sandbox.errors import Refusal
-from simworlds.sandbox.resource_limits import GIB, ResourceLimits
+from simworlds.sandbox.pictures import decode_pictures
+from simworlds.sandbox.pictures.decode_pictures import FAULT, FORMATS, LONGEST_FAULT, PICTURE, REQUEST
 from simworlds.sandbox.runtime import clean_environment
 
 if TYPE_CHECKING:
     from typing import BinaryIO
 
-    from simworlds.sandbox.confined_command import Sandbox
+    from simworlds.sandbox.confinement.confined_command import Sandbox
 
 MOST_PIXELS = 8192 * 8192
 LARGEST_FILE = 512 << 20  # bytes

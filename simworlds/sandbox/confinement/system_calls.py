@@ -10,12 +10,12 @@ import struct
 from functools import cache
 from typing import TYPE_CHECKING
 
-from simworlds.sandbox.system_call_numbers import ARCHITECTURES, NEWEST, NUMBERS
+from simworlds.sandbox.confinement.system_call_numbers import ARCHITECTURES, NEWEST, NUMBERS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from simworlds.sandbox.walls import Wall
+    from simworlds.sandbox.confinement.walls import Wall
 
 OWN_PROCESS = 0x5E1F5E1F
 """Stands in a filter for the number of the process itself, which the launcher fills in (see confine_self.py)."""

@@ -20,18 +20,18 @@ from glob import glob
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from simworlds.sandbox import confine_self
-from simworlds.sandbox.control_group import group_parents
+from simworlds.sandbox.confinement import confine_self
+from simworlds.sandbox.confinement.control_group import group_parents
+from simworlds.sandbox.confinement.resource_limits import ResourceLimits
+from simworlds.sandbox.confinement.system_calls import OWN_PROCESS, first_filter, installing_call, last_filter
+from simworlds.sandbox.confinement.walls import EVERY_WALL, WALLS, WITHOUT
+from simworlds.sandbox.confinement.worker_user import check_readable, hand_over, worker_id
 from simworlds.sandbox.errors import CannotStart
-from simworlds.sandbox.resource_limits import ResourceLimits
-from simworlds.sandbox.system_calls import OWN_PROCESS, first_filter, installing_call, last_filter
-from simworlds.sandbox.walls import EVERY_WALL, WALLS, WITHOUT
-from simworlds.sandbox.worker_user import check_readable, hand_over, worker_id
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from simworlds.sandbox.walls import Wall
+    from simworlds.sandbox.confinement.walls import Wall
 
 Kind = Literal["bubblewrap", "landlock", "none"]
 

@@ -8,11 +8,11 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, NamedTuple
 
 from simworlds.sandbox.hostile_ground import DEEPEST, DiskUsage, HostileGround
-from simworlds.sandbox.nameless_files import nameless_files
-from simworlds.sandbox.watched_process import WatchedProcess
+from simworlds.sandbox.watch.nameless_files import nameless_files
+from simworlds.sandbox.watch.watched_process import WatchedProcess
 
 if TYPE_CHECKING:
-    from simworlds.sandbox.resource_limits import ResourceLimits
+    from simworlds.sandbox.confinement.resource_limits import ResourceLimits
 
 _LEAST_FREE = (
     1 << 30
