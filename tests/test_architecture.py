@@ -395,7 +395,6 @@ LISTS = frozenset(
 CROWDED = {
     "agents/blender": 21,
     "agents/blender/inside/attached": 23,
-    "agents/blender/inside/state": 19,
     "agents/protocol/judging": 17,
     "kb_build/blender/inside": 30,
     "kb_build/flow": 42,

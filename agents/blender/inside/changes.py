@@ -10,8 +10,8 @@ import tempfile
 import bpy
 from bpy.app.handlers import persistent
 
+from .digests.fingerprint import digests_by_part
 from .physics import caches
-from .state.fingerprint import digests_by_part
 
 # Collections of bpy.data whose changes are reported.
 KINDS = (

@@ -8,8 +8,8 @@ import bpy
 from simworlds.sandbox.inside.refusal import Refused
 
 from ..changes import KINDS
-from ..state.block_reader import key_of
-from ..state.fingerprint import digests_by_part
+from ..digests.block_reader import key_of
+from ..digests.fingerprint import digests_by_part
 from .user_state import in_window
 
 PREFIX = "SimWorlds: "

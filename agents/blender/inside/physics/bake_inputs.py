@@ -12,8 +12,8 @@ from array import array
 import bpy
 
 from ..blend.bake_tag import BAKE_INPUTS
-from ..state.block_parts import extra_parts_of
-from ..state.block_reader import BlockReader
+from ..digests.block_parts import extra_parts_of
+from ..digests.block_reader import BlockReader
 from . import transform_inputs
 
 _LOOKS = (

@@ -9,7 +9,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from ..blend.simulation_zones import objects_with_zones
-from ..state.fingerprint import simulation_inputs
+from ..digests.fingerprint import simulation_inputs
 from . import caches
 
 _stepped = {}  # scene → _Steps

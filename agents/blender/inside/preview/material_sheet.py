@@ -11,7 +11,7 @@ import bpy
 from ..blend.named_objects import objects_named
 from ..blend.names import quoted
 from ..blend.protocol_tags import object_collections
-from ..state.still_digest import digest_of, lasting_digest
+from ..digests.still_digest import digest_of, lasting_digest
 from .fixed_views import SCENE, PreviewRenderer, at_frame, copy_of, grouped_boxes, note_missing
 from .framing import VIEWS, BoundingBox, boxes_of, patch_of
 from .lit_studio import LitStudio

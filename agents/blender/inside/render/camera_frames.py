@@ -14,9 +14,9 @@ from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.simulation_zones import objects_with_zones
 from ..blend.temporary import temporary_settings, without_render_result
+from ..digests.fingerprint import fingerprint
+from ..digests.still_digest import still_digest
 from ..physics import caches
-from ..state.fingerprint import fingerprint
-from ..state.still_digest import still_digest
 from .shot_settings import settings_for, shot_of
 
 _STILL_FRAME = 1  # the frame at which scenes are compared

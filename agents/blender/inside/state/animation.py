@@ -6,7 +6,7 @@ from array import array
 import bpy
 
 from ..blend.fcurves import action_curves, curves_by_slot
-from .block_reader import key_of
+from ..digests.block_reader import key_of
 from .rna_values import number, numbers, text
 
 MOST_KEYS = 500_000  # of one readout whose values are read

@@ -10,10 +10,10 @@ from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.names import nearest
 from ..blend.protocol_tags import ROLE
+from ..digests.fingerprint import data_blocks
 from ..readout_sections import DATA_BLOCKS, SECTIONS
 from .animation import action_keys, animation_facts, unused_actions
 from .appearance import camera_facts, light_facts, material_facts, render_facts, world_facts
-from .fingerprint import data_blocks
 from .likely_mistakes import notes_of
 from .object_entries import SceneObjects, object_facts, tags_of, tree_of
 from .physics_entries import physics_of, rigid_body_world_facts

@@ -58,7 +58,7 @@ for curve in curves_of(o):
         key.interpolation = 'LINEAR'
 """
 STATE = """
-from simworlds_worker.state.fingerprint import fingerprint
+from simworlds_worker.digests.fingerprint import fingerprint
 s = bpy.context.scene
 w = s.rigidbody_world
 blocks = {name: len(getattr(bpy.data, name)) for name in dir(bpy.data)
