@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import Field, ValidationError
 
 from agents.blender.attached.open_blenders import About, OpenBlender, choose
-from agents.blender.inside.attached import link
+from agents.blender.inside.attached.connection import link
 from simworlds.sandbox.blender_process import WorkerReply
 from simworlds.sandbox.errors import MissingModule, Refusal, ToolBroke
 from simworlds.sandbox.inside import channel

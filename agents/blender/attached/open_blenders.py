@@ -10,7 +10,7 @@ from pathlib import Path
 
 from pydantic import Field, ValidationError
 
-from agents.blender.inside.attached import announcement
+from agents.blender.inside.attached.connection import announcement
 from simworlds.operating_system import SYSTEM
 from simworlds.sandbox.errors import Refusal
 from simworlds.sandbox.replies import Claim, Name, Place

@@ -17,32 +17,34 @@ from bpy.app.handlers import persistent
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from . import announcement, busy, copies, marks
-from .listener import Listener
+from .code.undo_steps import UndoSteps, digest
+from .connection import announcement
+from .connection.listener import Listener
+from .files import copies
 from .long_work import LongWork
-from .undo_steps import UndoSteps, digest
+from .user import busy, marks
 from .user_state import main_window
 
 LOOK, SHOW, CHANGE, CODE, LONG = "look", "show", "change", "run code", "work long"
 # Tool → (module of the worker's package, function, what it needs).
 TOOLS = {
     "user_digests": ("attached.user_state", "digests", LOOK),
-    "user_state": ("attached.window", "user_state", LOOK),
-    "screenshot": ("attached.window", "screenshot", LOOK),
-    "write_copy": ("attached.copies", "write_copy", LOOK),
-    "write_part": ("attached.parts", "write_part", LOOK),
-    "scene_state": ("attached.window", "scene_state", LOOK),
+    "user_state": ("attached.user.window", "user_state", LOOK),
+    "screenshot": ("attached.user.window", "screenshot", LOOK),
+    "write_copy": ("attached.files.copies", "write_copy", LOOK),
+    "write_part": ("attached.files.parts", "write_part", LOOK),
+    "scene_state": ("attached.user.window", "scene_state", LOOK),
     "present": ("api_presence", "present", LOOK),
     "opened": ("", "", LOOK),
-    "show": ("attached.show", "show", SHOW),
-    "mark": ("attached.show", "mark", LOOK),
+    "show": ("attached.user.show", "show", SHOW),
+    "mark": ("attached.user.show", "mark", LOOK),
     "undo": ("", "", CHANGE),
     "tag": ("tag", "tag", CHANGE),
     "group": ("group", "group", CHANGE),
     "fluids": ("physics.bake", "fluids", LOOK),
     "bake": ("attached.bakes", "bake_in_steps", LONG),
     "free_bake": ("attached.bakes", "free", CHANGE),
-    "apply": ("attached.apply", "apply", CODE),
+    "apply": ("attached.code.apply", "apply", CODE),
 }
 _IN_WORDS = {
     "user_state": "read what is selected",

@@ -8,8 +8,8 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from . import hold
-from .undo_steps import digest
+from .code.undo_steps import digest
+from .user import hold
 from .user_state import in_window
 
 _SLICE_SECONDS = 0.1

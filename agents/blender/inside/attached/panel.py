@@ -9,7 +9,8 @@ from typing import Any
 
 import bpy
 
-from . import calls, hold
+from . import calls
+from .user import hold
 
 ROOT = __package__.partition(".worker.")[0]
 VERSION = "0.1.0"

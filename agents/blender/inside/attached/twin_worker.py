@@ -2,9 +2,9 @@
 """The worker of the sandboxed copy: it also rehearses code, and opens a part of a scene."""
 
 from .. import worker
-from . import code_guard
+from .code import code_guard
 
-TOOLS = {"rehearse": ("attached.apply", "rehearse"), "load_part": ("attached.parts", "load_part")}
+TOOLS = {"rehearse": ("attached.code.apply", "rehearse"), "load_part": ("attached.files.parts", "load_part")}
 
 
 def main(arguments):

@@ -19,8 +19,8 @@ from processes import becomes
 
 from agents.blender.attached.attached_blender import AttachedBlender
 from agents.blender.attached.open_blenders import choose, open_blenders
-from agents.blender.inside.attached import announcement, link
-from agents.blender.inside.attached.listener import Listener
+from agents.blender.inside.attached.connection import announcement, link
+from agents.blender.inside.attached.connection.listener import Listener
 from simworlds.operating_system import Windows
 from simworlds.sandbox.errors import BlenderError, Refusal
 from simworlds.sandbox.replies import unread

@@ -301,7 +301,7 @@ async def test_waits_until_the_user_has_finished_what_they_drag(client: Client, 
 
 async def test_a_scene_that_is_too_large_to_copy_is_told(client: Client, window: OpenWindow) -> None:
     """Here a slow disk: Blender is told that it writes a byte a second."""
-    name = "simworlds_live.worker.attached.copies"
+    name = "simworlds_live.worker.attached.files.copies"
     window.choose(f"import sys; sys.modules[{name!r}]._measured['speed'] = 1.0")
     for tool, arguments in (("blender_execute", {"code": "1+1"}), ("blender_scene_layout_preview", {})):
         refused = await use(client, tool, **arguments)
@@ -324,7 +324,7 @@ bpy.context.scene.collection.objects.link(bpy.data.objects.new("Large", mesh))
 """
     made = await use(client, "blender_execute", code=code)
     assert not made.is_error, text(made)
-    speed = "import sys; sys.modules['simworlds_live.worker.attached.copies']._measured['speed'] = {}"
+    speed = "import sys; sys.modules['simworlds_live.worker.attached.files.copies']._measured['speed'] = {}"
     window.choose(speed.format(4e6))
     yield
     window.choose(speed.format(1e9))

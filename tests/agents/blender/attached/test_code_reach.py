@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from agents.blender.inside.attached.code_reach import Reach
+from agents.blender.inside.attached.code.code_reach import Reach
 
 
 @pytest.mark.parametrize(

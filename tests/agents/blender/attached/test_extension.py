@@ -30,13 +30,15 @@ sys.path.insert(0, sys.argv[1])
 import simworlds_live
 names = [m.name for m in pkgutil.walk_packages(simworlds_live.__path__, "simworlds_live.")]
 # Those that draw need a window, those of the sandbox's own programs are not called here.
-skipped = {"simworlds_live.worker.attached.marks", "simworlds_live.worker.attached.show",
+skipped = {"simworlds_live.worker.attached.user.marks", "simworlds_live.worker.attached.user.show",
            "simworlds_live.worker.attached.calls", "simworlds_live.worker.attached.panel"}
 for name in names:
     if name not in skipped:
         importlib.import_module(name)
 foreign = [name for name in sys.modules if name.partition(".")[0] in {"simworlds", "agents"}]
-from simworlds_live.worker.attached import structures, undo_steps, user_state
+from simworlds_live.worker.attached import user_state
+from simworlds_live.worker.attached.code import undo_steps
+from simworlds_live.worker.attached.files import structures
 offset = structures.offset_of("Object", "loc")
 import ctypes
 made = bpy.data.objects.new("x", None)

@@ -6,11 +6,11 @@ import time
 
 import bpy
 
-from ..blend.file_io import make_own
+from ...blend.file_io import make_own
+from ..code.code_reach import Reach
+from ..user_state import main_window
 from . import libraries
-from .code_reach import Reach
 from .copies import TooLarge, check_drawn, check_size, paths_used
-from .user_state import main_window
 
 _NAMED = (
     "objects", "collections", "materials", "meshes", "curves", "lights", "cameras", "worlds", "images", "node_groups",

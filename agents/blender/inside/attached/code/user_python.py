@@ -4,8 +4,8 @@
 import signal
 import sys
 
-from ..kept_names import KeptNames
-from ..kept_settings import KeptSettings
+from ...kept_names import KeptNames
+from ...kept_settings import KeptSettings
 
 _PACKAGE = __package__.partition(".worker.")[0]
 _SIGNALS = tuple(

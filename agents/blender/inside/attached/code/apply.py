@@ -8,8 +8,8 @@ import threading
 
 import bpy
 
-from ..changes import listen
-from ..execute import run_watched
+from ...changes import listen
+from ...execute import run_watched
 from .code_guard import CodeGuard, is_of_fluid
 from .undo_steps import MOST_BLOCKS
 from .user_python import UserPython

@@ -10,10 +10,10 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from ..blend.cache_folders import cache_folders
-from ..blend.temporary import temporary_settings, without_handlers
+from ...blend.cache_folders import cache_folders
+from ...blend.temporary import temporary_settings, without_handlers
+from ..user_state import in_window
 from . import structures
-from .user_state import in_window
 
 _ON_SAVING = ("save_pre", "save_post", "save_post_fail")
 _BYTES_A_SECOND = 150e6  # until a copy of this Blender was measured

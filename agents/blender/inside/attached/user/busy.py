@@ -7,7 +7,8 @@ import struct
 
 import bpy
 
-from . import hold, structures
+from ..files import structures
+from . import hold
 
 _JOBS = {
     "RENDER": "renders",

@@ -7,10 +7,10 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from ..changes import KINDS
-from ..digests.block_reader import key_of
-from ..digests.fingerprint import digests_by_part
-from .user_state import in_window
+from ...changes import KINDS
+from ...digests.block_reader import key_of
+from ...digests.fingerprint import digests_by_part
+from ..user_state import in_window
 
 PREFIX = "SimWorlds: "
 MOST_BLOCKS = 300  # that are read while the window waits; of more, whether a state is the same is not known

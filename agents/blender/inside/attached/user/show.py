@@ -5,8 +5,8 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
+from ..user_state import largest_view, main_window, state
 from . import marks
-from .user_state import largest_view, main_window, state
 
 
 def show(arguments, report):

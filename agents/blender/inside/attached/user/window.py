@@ -8,9 +8,9 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from ..state import readout
-from .copies import TooLarge
-from .user_state import main_window, state
+from ...state import readout
+from ..files.copies import TooLarge
+from ..user_state import main_window, state
 
 _LONGEST_DRAWING = 2.0  # seconds
 _drawn = {"shown": None, "seconds": 0.0}  # the last picture: of what, and how long it took
