@@ -21,8 +21,8 @@ from mcp import StdioServerParameters
 from mcp.client import Client
 from mcp.client.stdio import stdio_client
 
+from agents.blender.files.run_folder import RunFolder
 from agents.blender.launch import make_launch
-from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
 from agents.blender.tool_catalogue import BY_NAME
 from bench.markdown_tables import Table

@@ -98,9 +98,9 @@ def _with_byte_code(_: Path) -> None:
 
 
 def _compiled(folder: Path) -> Path:
+    from agents.blender.files.run_folder import RunFolder
     from agents.blender.first_pictures import keep_drawn
     from agents.blender.launch import make_launch
-    from agents.blender.run_folder import RunFolder
     from agents.blender.supervisor import Supervisor
     from simworlds.installed import installed_bpy
     from simworlds.sandbox.errors import BlenderError

@@ -393,8 +393,6 @@ LISTS = frozenset(
 )
 # Folders with more modules, and how many they may have. No folder is added here, and no number is raised.
 CROWDED = {
-    "agents/blender": 21,
-    "agents/protocol/judging": 17,
     "kb_build/blender/inside": 30,
     "kb_build/flow": 42,
     "kb_serve/answer": 30,

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any, cast
 import anyio
 import anyio.to_thread
 
+from agents.blender.files.run_folder import RunFolder, new_run
 from agents.blender.jobs import SessionJobs
 from agents.blender.launch import make_launch, runs_folder
-from agents.blender.run_folder import RunFolder, new_run
 from agents.blender.supervisor import Supervisor
 from agents.blender.tools import job
 from agents.blender.tools.base import ToolContext, parse, perform

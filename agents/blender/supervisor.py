@@ -8,8 +8,8 @@ import threading
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 
-from agents.blender.checkpoints import Checkpoint, Checkpoints
-from agents.blender.run_folder import SCENE_FILE, RunFolder
+from agents.blender.files.checkpoints import Checkpoint, Checkpoints
+from agents.blender.files.run_folder import SCENE_FILE, RunFolder
 from simworlds.folder_lock import locked
 from simworlds.sandbox.blender_process import BlenderProcess
 from simworlds.sandbox.errors import (

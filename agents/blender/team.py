@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import mcp_types as types
 from mcp.shared.exceptions import MCPError
 
-from agents.blender import plan_check
+from agents.blender.checks import plan_check
 from agents.plan.part import STAGES
 from agents.roles.names import ROLES
 from agents.roles.prompts import (

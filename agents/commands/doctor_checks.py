@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from agents.blender.attached.open_blenders import open_blenders
+from agents.blender.files.run_folder import RunFolder
 from agents.blender.first_pictures import keep_drawn
 from agents.blender.fluid_support import check_fluids
 from agents.blender.launch import launch_in, runs_folder
-from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
 from simworlds.how_to_get_bases import how_to_get
 from simworlds.operating_system import SYSTEM

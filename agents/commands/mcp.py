@@ -211,7 +211,7 @@ def _is_typed(context: click.Context, name: str) -> bool:
 
 def _check_run(run: Path) -> None:
     """Makes the folder of a run. Raises UsageError where that cannot be, or it holds something else."""
-    from agents.blender.run_folder import RunFolder  # noqa: PLC0415 - not for --help
+    from agents.blender.files.run_folder import RunFolder  # noqa: PLC0415 - not for --help
 
     if RunFolder.is_foreign(run):
         raise click.UsageError(f"--run: {run} is not empty, and holds no run. Choose another folder.")

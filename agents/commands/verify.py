@@ -224,8 +224,8 @@ def _run(
 
     Raises _CannotCheckError and BlenderError.
     """
+    from agents.blender.checks.verification import ScenePosition, verify_scene  # noqa: PLC0415
     from agents.blender.tools.base import Call  # noqa: PLC0415 - not for --help
-    from agents.blender.verification import ScenePosition, verify_scene  # noqa: PLC0415
     from agents.protocol.report.summary import VerificationScope  # noqa: PLC0415
 
     with _StatusLine() as status:
@@ -274,14 +274,14 @@ def _without(report: Report, withdrawn: list[Withdrawal]) -> Report:
 @contextmanager
 def _opened(scene: Path, choices: dict[str, Any], call: Call) -> Generator[Supervisor]:
     """A Blender with the file open, in a temporary run folder. Raises _CannotCheckError and BlenderError."""
-    from agents.blender.launch import make_launch  # noqa: PLC0415 - not for --help
-    from agents.blender.run_folder import RunFolder  # noqa: PLC0415
-    from agents.blender.saved_files import (  # noqa: PLC0415
+    from agents.blender.files.run_folder import RunFolder  # noqa: PLC0415
+    from agents.blender.files.saved_files import (  # noqa: PLC0415
         LoadedFile,
         caches_folder,
         find_blend_file,
         is_blend_name,
     )
+    from agents.blender.launch import make_launch  # noqa: PLC0415 - not for --help
     from agents.blender.supervisor import Supervisor  # noqa: PLC0415
 
     real = scene.expanduser().resolve()

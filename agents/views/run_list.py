@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from agents.blender.files.run_folder import roots
 from agents.blender.launch import runs_folder
-from agents.blender.run_folder import roots
 from agents.loop.errors import NoRun
 from agents.loop.record.elsewhere import runs_elsewhere
 from agents.loop.record.events import RunEnded

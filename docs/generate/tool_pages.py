@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from agents.blender import plan_check
 from agents.blender.attached.tool_catalogue import TOOLS as ATTACHED_TOOLS
+from agents.blender.checks import plan_check
 from agents.blender.server import Suite, first_profiles
 from agents.blender.team import PROMPTS, Team
 from agents.blender.tool_catalogue import FOR_CLIENTS, ONLINE, TOOLS, WITH_ASSETS

@@ -5,8 +5,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING, Any
 
+from agents.blender.files.run_folder import RunFolder
 from agents.blender.launch import make_launch
-from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
 from agents.blender.tools.base import BlenderTool, Call, Result, ToolContext, parse, perform
 from simworlds.sandbox.replies import unread

@@ -16,8 +16,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from agents.blender.files.run_folder import RunFolder
 from agents.blender.launch import make_launch
-from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
 from agents.blender.tool_catalogue import BY_NAME
 from agents.blender.tools.base import Call, ToolContext, parse, perform

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from places import REPO
 
-from agents.blender import plan_check
+from agents.blender.checks import plan_check
 from agents.blender.server import Suite, first_profiles
 from agents.blender.team import PROMPTS, Team
 from agents.blender.tool_catalogue import FOR_CLIENTS, TOOLS

@@ -10,7 +10,7 @@ import pytest
 import yaml
 from places import REPO
 
-from agents.blender.plan_check import NAME as PLAN_CHECK
+from agents.blender.checks.plan_check import NAME as PLAN_CHECK
 from agents.blender.server import Suite, first_profiles
 from agents.blender.team import Team
 from agents.blender.tool_catalogue import BY_NAME

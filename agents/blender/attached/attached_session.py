@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from agents.blender.attached.open_blenders import About
+    from agents.blender.files.run_folder import RunFolder
     from agents.blender.jobs import SessionJobs
-    from agents.blender.run_folder import RunFolder
     from agents.blender.tools.base import BlenderTool
 
 _CLIENT = "SimWorlds MCP"

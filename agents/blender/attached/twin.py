@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from agents.blender.attached.attached_blender import AttachedBlender
-    from agents.blender.run_folder import RunFolder
+    from agents.blender.files.run_folder import RunFolder
     from simworlds.sandbox.confinement.confined_command import Sandbox
     from simworlds.sandbox.runtime import Runtime
 

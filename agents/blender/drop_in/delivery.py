@@ -16,7 +16,7 @@ from simworlds.sandbox.errors import NotThere, Refusal
 
 if TYPE_CHECKING:
     from agents.blender.drop_in.screenshot_places import ScreenshotPlaces
-    from agents.blender.run_folder import RunFolder
+    from agents.blender.files.run_folder import RunFolder
 
 _FOLDER = "to-deliver"  # in the workspace
 _LARGEST = 256 << 20  # bytes of a picture

@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
     from pathlib import Path
 
-    from agents.blender.readable_files import ReadableFile
-    from agents.blender.run_folder import RunFolder
+    from agents.blender.files.readable_files import ReadableFile
+    from agents.blender.files.run_folder import RunFolder
 
 _LARGEST = 8 << 30  # bytes of a file
 _MOST_BYTES = 8 << 30  # that are copied for one import

@@ -19,7 +19,7 @@ from simworlds.counting import counted, format_list
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
-    from agents.blender.run_folder import RunFolder
+    from agents.blender.files.run_folder import RunFolder
 
 NAME = "blender_assets"
 _LISTED = 20

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field
 
-from agents.blender.preflight import PreFlight, check_before_running
+from agents.blender.checks.preflight import PreFlight, check_before_running
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from simworlds.counting import counted
 from simworlds.sandbox.replies import Claim, Text
 
 if TYPE_CHECKING:
-    from agents.blender.checkpoints import Checkpoint
+    from agents.blender.files.checkpoints import Checkpoint
     from simworlds.sandbox.blender_process import WorkerReply
 
 LONGEST_CODE = 400_000

@@ -13,8 +13,8 @@ from pydantic import Field
 from agents.blender.exchange.comparison import differences, not_kept
 from agents.blender.exchange.formats import Format, format_of
 from agents.blender.exchange.replies import ExportedFile, ImportedFile
+from agents.blender.files.saved_files import copy_from_workspace, staging
 from agents.blender.formatting import format_size
-from agents.blender.saved_files import copy_from_workspace, staging
 from agents.blender.second_blender import second_blender
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from agents.blender.tools.import_file import describe_facts

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import Field
 
-from agents.blender.checkpoints import KEPT
-from agents.blender.formatting import format_size
-from agents.blender.saved_files import (
+from agents.blender.files.checkpoints import KEPT
+from agents.blender.files.saved_files import (
     COPY_NAME,
     CacheReport,
     ExternalFile,
@@ -25,6 +24,7 @@ from agents.blender.saved_files import (
     put_in_place,
     staging,
 )
+from agents.blender.formatting import format_size
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from simworlds.counting import counted, format_list
 from simworlds.sandbox.errors import Refusal, ToolBroke

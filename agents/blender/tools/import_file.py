@@ -11,7 +11,7 @@ from agents.blender.exchange.comparison import describe_bounds
 from agents.blender.exchange.formats import describe_support, format_of
 from agents.blender.exchange.lending import check_there, lent_for_import
 from agents.blender.exchange.replies import AvailableFormats, ExchangeFacts, ImportedFile
-from agents.blender.readable_files import find_readable
+from agents.blender.files.readable_files import find_readable
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from agents.blender.tools.kept_scene import kept_scene
 from simworlds.counting import counted, format_list

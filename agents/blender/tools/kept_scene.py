@@ -10,7 +10,7 @@ from simworlds.sandbox.errors import Refusal, ToolBroke
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-    from agents.blender.checkpoints import Checkpoint
+    from agents.blender.files.checkpoints import Checkpoint
     from agents.blender.supervisor import Supervisor
 
 

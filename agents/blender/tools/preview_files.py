@@ -8,7 +8,7 @@ from agents.blender.tools.base import SavedImage
 from simworlds.files import write_whole
 
 if TYPE_CHECKING:
-    from agents.blender.run_folder import RunFolder
+    from agents.blender.files.run_folder import RunFolder
 
 FOLDER = "previews"
 

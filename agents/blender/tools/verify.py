@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import Field
 
+from agents.blender.checks.verification import ScenePosition, verify_scene
 from agents.blender.sheets.findings_sheet import draw_findings
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from agents.blender.tools.preview_files import new_preview
-from agents.blender.verification import ScenePosition, verify_scene
 from agents.protocol.report.json_report import as_json
 from agents.protocol.report.markdown import as_text
 from agents.protocol.report.summary import VerificationScope

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from agents.blender.saved_files import move_saved
+from agents.blender.files.saved_files import move_saved
 from agents.blender.tools.scene_order import words_of
 from agents.loop.edit.baseline import told_since
 from agents.loop.errors import NotSaved, RunError

@@ -11,7 +11,7 @@ from agents.protocol.measures.motion import MotionPathRequest
 from agents.protocol.measures.requests import Unmeasured
 
 if TYPE_CHECKING:
-    from agents.protocol.judging.vectors import Array
+    from agents.protocol.judging.geometry.vectors import Array
     from agents.protocol.measures.motion import MotionPathMeasure
     from agents.protocol.measures.requests import Measures, Names
     from agents.protocol.rule import RuleContext

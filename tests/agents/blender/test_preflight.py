@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from places import REPO
 
-from agents.blender.preflight import _answers  # pyright: ignore[reportPrivateUsage] - what hostile code can answer
+from agents.blender.checks.preflight import _answers  # pyright: ignore[reportPrivateUsage] - what hostile code can answer
 from agents.blender.tools.base import Call, NotChecked, ToolContext, parse, perform
 from agents.blender.tools.execute import TOOL
 from kb_check import tool as check_tool

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from agents.blender.saved_files import caches_folder, move_saved, put_in_place
+from agents.blender.files.saved_files import caches_folder, move_saved, put_in_place
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:

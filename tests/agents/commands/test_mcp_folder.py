@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from click.testing import CliRunner
 
-from agents.blender.run_folder import RunFolder
+from agents.blender.files.run_folder import RunFolder
 from agents.commands.mcp import mcp
 
 if TYPE_CHECKING:

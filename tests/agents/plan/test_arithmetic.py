@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from places import REPO
 
-from agents.blender import plan_check
+from agents.blender.checks import plan_check
 from agents.plan.arithmetic import doubts_of
 from agents.plan.check import read_plan
 

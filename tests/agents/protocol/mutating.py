@@ -22,8 +22,8 @@ from mutation import TOOLS, Mutation  # noqa: E402
 from mutations import draw  # noqa: E402
 from valid_scenes import valid_scenes  # noqa: E402
 
+from agents.blender.checks.verification import verify_scene  # noqa: E402
 from agents.blender.tools.base import Call  # noqa: E402
-from agents.blender.verification import verify_scene  # noqa: E402
 from agents.protocol.rules.catalogue import BY_ID, RULES  # noqa: E402
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from agents.blender.checks.verification import verify_scene
 from agents.blender.tools.base import Call
-from agents.blender.verification import verify_scene
 from agents.plan.scene import ScenePlan
 from agents.protocol.measures.requests import measure
 from agents.protocol.rules.catalogue import select_rules

@@ -11,10 +11,15 @@ from scenes import a_plan
 
 from agents.protocol.facts import SceneFacts
 from agents.protocol.judging.declared_contacts import allowed_crossings, declared_contacts
-from agents.protocol.judging.poses import anchor
+from agents.protocol.judging.geometry.poses import anchor
+from agents.protocol.judging.geometry.vectors import (
+    angle_between,
+    axes_of_euler,
+    place_and_axes,
+    rotation_between,
+)
 from agents.protocol.judging.sample_frames import moves, planned_pose_frame, relation_frames, sample_frames
 from agents.protocol.judging.sizes import smallest_diagonal
-from agents.protocol.judging.vectors import angle_between, axes_of_euler, place_and_axes, rotation_between
 from agents.protocol.rule import RuleContext
 from agents.protocol.structure import SceneStructure
 from agents.protocol.tolerances import TOLERANCES

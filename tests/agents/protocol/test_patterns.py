@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from agents.protocol.judging.patterns import fit_circle, fit_grid, fit_line, mirror_error
+from agents.protocol.judging.geometry.patterns import fit_circle, fit_grid, fit_line, mirror_error
 
 if TYPE_CHECKING:
     import numpy.typing as npt

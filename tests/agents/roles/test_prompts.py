@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, get_args
 
 import pytest
 
-from agents.blender import docs_client, plan_check
+from agents.blender import docs_client
+from agents.blender.checks import plan_check
 from agents.blender.server import entry
 from agents.blender.tool_catalogue import TOOLS
 from agents.loop.algorithm import ALL_AT_ONCE

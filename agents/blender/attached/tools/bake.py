@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import RootModel
 
-from agents.blender.saved_files import copy_from_workspace
+from agents.blender.files.saved_files import copy_from_workspace
 from agents.blender.tools import bake
 from simworlds.sandbox.errors import Refusal
 from simworlds.sandbox.replies import Name

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import Field
 
 from agents.blender.attached.attached_blender import TooLarge
-from agents.blender.preflight import PreFlight, check_before_running
+from agents.blender.checks.preflight import PreFlight, check_before_running
 from agents.blender.tools import execute
 from agents.blender.tools.base import BlenderTool, Call, Result
 from agents.blender.tools.execute import ExecuteArguments, Outcome, describe, title_of

@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from agents.plan.motion import MotionPhase
     from agents.plan.scene import PlannedObject
     from agents.protocol.findings import Finding
+    from agents.protocol.judging.geometry.vectors import Array
     from agents.protocol.judging.measured_motion import MeasuredMotion
-    from agents.protocol.judging.vectors import Array
 
 _IMPACT = (
     3.0  # times gravity's change of speed in a frame: a change against gravity that only an impact makes

@@ -8,6 +8,7 @@ import numpy as np
 
 from agents.protocol.judging import solver_advice
 from agents.protocol.judging.arrivals import arrival, arrival_request, arrive_at, meeting
+from agents.protocol.judging.geometry.vectors import angle_between
 from agents.protocol.judging.measured_motion import measured_motion, path_request
 from agents.protocol.judging.phases import (
     RESTING,
@@ -20,7 +21,6 @@ from agents.protocol.judging.phases import (
     phase_label,
     planned_phases,
 )
-from agents.protocol.judging.vectors import angle_between
 from agents.protocol.measures.requests import Measures, Request, Unmeasured
 from agents.protocol.rule import NotApplicable, Rule, RuleContext
 from agents.protocol.tolerances import CONTACT
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
     from agents.plan.motion import MotionPhase
     from agents.protocol.findings import Finding
+    from agents.protocol.judging.geometry.vectors import Array
     from agents.protocol.judging.measured_motion import MeasuredMotion
-    from agents.protocol.judging.vectors import Array
 
 _RETURNING = frozenset({"swing", "bounce"})  # judged by how far they get, not where they end
 _WITH_ITS_CAUSE = 2  # frames between a contact and a motion that comes from it

@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from agents.plan.relations import Distributed, SymmetricAbout
-from agents.protocol.judging.patterns import fit_circle, fit_grid, fit_line, mirror_error
+from agents.protocol.judging.geometry.patterns import fit_circle, fit_grid, fit_line, mirror_error
+from agents.protocol.judging.geometry.poses import pose, pose_request
+from agents.protocol.judging.geometry.vectors import angle_between, as_vector
 from agents.protocol.judging.planned_relations import Violation, relation_rule
-from agents.protocol.judging.poses import pose, pose_request
-from agents.protocol.judging.vectors import angle_between, as_vector
 from agents.protocol.measures.geometry import BoxesRequest
 from agents.protocol.measures.requests import Unmeasured
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from agents.protocol.judging.patterns import CircleFit
-    from agents.protocol.judging.vectors import Array
+    from agents.protocol.judging.geometry.patterns import CircleFit
+    from agents.protocol.judging.geometry.vectors import Array
     from agents.protocol.measures.requests import Measures, Request
     from agents.protocol.rule import RuleContext
 

@@ -8,12 +8,12 @@ import numpy as np
 
 from agents.plan.graph import reachable
 from agents.plan.relations import Aperture, FixedAttachment
+from agents.protocol.judging.geometry.poses import anchor
+from agents.protocol.judging.geometry.vectors import place_and_axes
 from agents.protocol.judging.move_advice import describe_move, gap_vector, is_near
 from agents.protocol.judging.planned_relations import Violation, relation_rule, surface_pair, surfaces
-from agents.protocol.judging.poses import anchor
 from agents.protocol.judging.sample_frames import moves, sample_frames
 from agents.protocol.judging.sizes import contact_gap, smallest_dimension
-from agents.protocol.judging.vectors import place_and_axes
 from agents.protocol.measures.contact import DepthRequest, OpeningRequest
 from agents.protocol.measures.geometry import GapRequest, PosesRequest
 from agents.protocol.measures.requests import Unmeasured
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from typing import Any
 
-    from agents.protocol.judging.vectors import Array
+    from agents.protocol.judging.geometry.vectors import Array
     from agents.protocol.measures.requests import Measures, Names, Request
     from agents.protocol.rule import RuleContext
 

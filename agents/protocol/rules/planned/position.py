@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from agents.plan.relations import SIDES, Direction, Facing, NextTo, OnTopOf, ParallelTo, Upright
+from agents.protocol.judging.geometry.poses import anchor, pose, pose_request
+from agents.protocol.judging.geometry.vectors import angle_between, as_vector, rotated
 from agents.protocol.judging.measured_motion import mesh_names
 from agents.protocol.judging.planned_relations import Violation, relation_rule, surface_pair, surfaces
-from agents.protocol.judging.poses import anchor, pose, pose_request
 from agents.protocol.judging.sizes import contact_gap
-from agents.protocol.judging.vectors import angle_between, as_vector, rotated
 from agents.protocol.measures.geometry import ExtentsRequest, GapRequest
 from agents.protocol.measures.motion import MotionPathRequest
 from agents.protocol.measures.position import DirectionRequest, FootprintRequest
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from typing import Any
 
-    from agents.protocol.judging.vectors import Array
+    from agents.protocol.judging.geometry.vectors import Array
     from agents.protocol.measures.requests import Measures, Request
     from agents.protocol.rule import RuleContext
 

@@ -6,9 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from agents.protocol.judging.poses import anchor
+from agents.protocol.judging.geometry.poses import anchor
+from agents.protocol.judging.geometry.vectors import (
+    as_vector,
+    axes_of_euler,
+    place_and_axes,
+    rotation_between,
+)
 from agents.protocol.judging.sample_frames import planned_pose_frame
-from agents.protocol.judging.vectors import as_vector, axes_of_euler, place_and_axes, rotation_between
 from agents.protocol.measures.geometry import ExtentsRequest, PosesRequest, SurfaceRequest
 from agents.protocol.measures.requests import Measures, Unmeasured
 from agents.protocol.rule import NotApplicable, Rule, RuleContext

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from agents.plan.relations import Aperture, EmbeddedIn, FixedAttachment, Inside, StableAgainst, SupportedBy
-from agents.protocol.judging.balance import balance
+from agents.protocol.judging.geometry.balance import balance
 from agents.protocol.judging.move_advice import describe_move, gap_vector, is_near
 from agents.protocol.judging.planned_relations import (
     Violation,

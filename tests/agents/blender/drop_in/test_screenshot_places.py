@@ -10,7 +10,7 @@ import pytest
 
 from agents.blender.drop_in.delivery import Delivery
 from agents.blender.drop_in.screenshot_places import ScreenshotPlaces
-from agents.blender.run_folder import RunFolder
+from agents.blender.files.run_folder import RunFolder
 from simworlds.sandbox.errors import Refusal
 
 PNG = b"\x89PNG\r\n\x1a\n and so on"

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from test_bake import PARTS, one
 
+from agents.blender.checks.verification import read_measures
 from agents.blender.tools.bake import TOOL as BAKE
 from agents.blender.tools.base import Call
 from agents.blender.tools.files import SAVE as SAVE_TOOL
 from agents.blender.tools.motion_sheet import TOOL as MOTION
 from agents.blender.tools.previews import TOOLS as PREVIEWS
 from agents.blender.tools.verify import TOOL as VERIFY
-from agents.blender.verification import read_measures
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.blender.run_folder import RunFolder
+from agents.blender.files.run_folder import RunFolder
 from agents.blender.tools.preview_files import FOLDER, new_preview
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from small_plan import small_plan
 
-from agents.blender import plan_check
+from agents.blender.checks import plan_check
 from agents.plan.scene import ScenePlan
 
 if TYPE_CHECKING:

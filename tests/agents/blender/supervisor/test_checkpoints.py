@@ -11,8 +11,8 @@ import pytest
 from live_session import LiveSession
 from processes import of_run
 
-from agents.blender import checkpoints
-from agents.blender.checkpoints import KEPT, Checkpoint
+from agents.blender.files import checkpoints
+from agents.blender.files.checkpoints import KEPT, Checkpoint
 from agents.blender.tools.execute import TOOL
 from simworlds.sandbox.confinement.confined_command import best_sandbox
 from simworlds.sandbox.confinement.resource_limits import ResourceLimits

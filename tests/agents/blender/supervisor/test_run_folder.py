@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from agents.blender.run_folder import RunFolder, new_run
+from agents.blender.files.run_folder import RunFolder, new_run
 from simworlds.folder_lock import locked
 from simworlds.sandbox.errors import Refusal
 

@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from live_session import LiveSession, no_docs
 
-from agents.blender.checkpoints import KEPT
+from agents.blender.files.checkpoints import KEPT
+from agents.blender.files.run_folder import RunFolder
+from agents.blender.files.saved_files import copy_from_workspace
 from agents.blender.launch import make_launch
-from agents.blender.run_folder import RunFolder
-from agents.blender.saved_files import copy_from_workspace
 from agents.blender.supervisor import Supervisor
 from agents.blender.tools.base import ToolContext
 from agents.blender.tools.files import LOAD, SAVE

@@ -19,8 +19,8 @@ from processes import becomes, has_ended, of_run
 from sandboxes import skip_unless_it_works
 from whole import IS_WHOLE
 
+from agents.blender.files.run_folder import RunFolder
 from agents.blender.launch import make_launch
-from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
 from agents.blender.tools.base import Call
 from agents.blender.tools.execute import TOOL

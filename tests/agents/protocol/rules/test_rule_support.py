@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from scenes import a_plan, build, the_finding, verified
 
-from agents.protocol.judging.balance import balance
+from agents.protocol.judging.geometry.balance import balance
 
 if TYPE_CHECKING:
     from live_session import LiveSession

@@ -21,8 +21,8 @@ from running import run_here
 from scenes import SOON, build
 from test_verify_tool import PLAN, SCENE
 
+from agents.blender.files.run_folder import RunFolder
 from agents.blender.launch import make_launch
-from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
 from agents.blender.tools.base import Call
 from agents.commands.verify import _draw  # pyright: ignore[reportPrivateUsage] - no scene ends Blender only there

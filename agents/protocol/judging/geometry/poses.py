@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.protocol.judging.vectors import place_and_axes
+from agents.protocol.judging.geometry.vectors import place_and_axes
 from agents.protocol.measures.geometry import PosesRequest
 
 if TYPE_CHECKING:
-    from agents.protocol.judging.vectors import Array
+    from agents.protocol.judging.geometry.vectors import Array
     from agents.protocol.measures.requests import Measures
     from agents.protocol.rule import RuleContext
 

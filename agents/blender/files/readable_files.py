@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
-    from agents.blender.run_folder import RunFolder
+    from agents.blender.files.run_folder import RunFolder
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field, model_validator
 
-from agents.blender.readable_files import find_readable
+from agents.blender.files.readable_files import find_readable
 from agents.blender.second_blender import second_blender
 from simworlds.counting import format_list
 from simworlds.formats.blend_file import HEAD, begins_blend
@@ -22,8 +22,8 @@ from simworlds.sandbox.replies import Claim, Count, Name, Place
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable
 
-    from agents.blender.readable_files import ReadableFile
-    from agents.blender.run_folder import RunFolder
+    from agents.blender.files.readable_files import ReadableFile
+    from agents.blender.files.run_folder import RunFolder
     from simworlds.sandbox.launch import Launch
 
 COPY_NAME = ".saved.blend"  # in the workspace, until it is taken out

@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from agents.protocol.judging.vectors import Array
+    from agents.protocol.judging.geometry.vectors import Array
 
 _LEVEL = 1e-3  # share of their extent that places may differ in height and still lie in a horizontal plane
 _OTHER_DIRECTION = 0.5  # sine of the angle from which two steps count as different directions of a grid

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from agents.blender.run_folder import RunFolder
+    from agents.blender.files.run_folder import RunFolder
 
 CHEAP_SECONDS = 0.25
 PATIENCE = 4.0
