@@ -26,17 +26,16 @@ from kb_build.flow.types import (
     UNKNOWN,
     Builtin,
     ClassObject,
+    Collection,
     FromProperty,
     Instance,
     LocalFunction,
-    LocalInstance,
     Mapping,
     Plain,
     Sequence,
     Tuple,
     Type,
     Union,
-    Unknown,
     join,
     literal,
     literal_text,
@@ -174,10 +173,10 @@ class Expressions(Members):
             return Plain(owner.kind) if isinstance(owner, Plain) else owner
         if isinstance(owner, Union):
             return union(self._sliced(member, part) for member in owner.members)
-        # A text, an array, what a class of the script's own gives.
-        if isinstance(owner, (Unknown, LocalInstance)):
-            return UNKNOWN
-        return Sequence("list", self.iterated(owner))
+        if isinstance(owner, (Collection, Instance)):
+            return Sequence("list", self.iterated(owner))
+        # A text, an array, what a class of the script's own gives; None, for what is set later.
+        return UNKNOWN
 
     # Literals.
 

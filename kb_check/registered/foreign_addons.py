@@ -27,6 +27,7 @@ _ENABLING = {
     "enable": "module_name",  # addon_utils
 }
 _BY_PLACE = "addon_utils"
+_OWN_NAMES = frozenset({"__name__", "__package__"})
 # The classes that add-ons give properties to; a file's own data and Blender's settings are hardly among them.
 _HOLDERS = tuple(
     f"{T}{name}"
@@ -100,9 +101,15 @@ def _enabled(analysis: Analysis) -> Iterator[str]:
                     continue
                 given = [keyword.value for keyword in node.keywords if keyword.arg == _ENABLING[called]]
                 for argument in [*given, *(node.args[:1] if is_by_place else ())]:
-                    yield from literal_texts(analysis.types.get(argument, UNKNOWN))
+                    yield from [*literal_texts(analysis.types.get(argument, UNKNOWN))] or _computed(argument)
             case _:
                 pass
+
+
+def _computed(argument: ast.expr) -> tuple[str, ...]:
+    """What stands for the name of an add-on that is not known: the expression, if it is not the script's own name."""
+    text = ast.unparse(argument)
+    return () if text in _OWN_NAMES else (text,)
 
 
 def _lists_addons(node: ast.expr) -> bool:

@@ -41,7 +41,7 @@ from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.running.raised import LACKS
 from kb_check.running.tried import is_tried
-from kb_check.syntax.annotated_parameters import ONE_IS_WRONG, is_annotated
+from kb_check.syntax.annotated import ONE_IS_WRONG, annotated
 from kb_check.syntax.bindings import bindings
 from kb_check.syntax.words import words_in_texts
 from kb_serve.recognise.names.elements import Elsewhere, elsewhere
@@ -123,7 +123,7 @@ def _is_of_other(script: Script, row: Resolution, owner: str, lacking: Lacking) 
     node = _owner_node(row)
     is_of_none = not lacking.replacement and script.names.is_nowhere(row.value)
     is_other = _is_of_object(script, row, owner) or is_of_none
-    return node is not None and is_other and is_annotated(script, node, owner)
+    return node is not None and is_other and bool(annotated(script, node, owner))
 
 
 def _is_of_object(script: Script, row: Resolution, owner: str) -> bool:
@@ -146,7 +146,8 @@ def _owner_node(row: Resolution) -> ast.expr | None:
 
 def _confused(script: Script, row: Resolution, owner: str, lacking: Lacking) -> Lacking:
     node = _owner_node(row)
-    message = f"`{ast.unparse(node) if node else ''}` is annotated as `{owner}`, which has no `{row.value}`"
+    said = annotated(script, node, owner) if node is not None else ""
+    message = f"{said}, which has no `{row.value}`"
     if not _is_of_object(script, row, owner):
         return replace(lacking, message=f"{message}, as nothing of Blender's has: {ONE_IS_WRONG}.")
     message += (

@@ -49,7 +49,7 @@ from kb_check.rule import Rule
 from kb_check.running.out_of_sight import knows_all
 from kb_check.running.tried import is_tried
 from kb_check.scene.made_here import is_new
-from kb_check.syntax.annotated_parameters import ONE_IS_WRONG, is_annotated
+from kb_check.syntax.annotated import ONE_IS_WRONG, annotated
 from kb_check.syntax.bindings import once_bound
 from kb_check.syntax.literals import items, set_of
 from kb_check.syntax.words import named_words
@@ -98,11 +98,11 @@ def _check(script: Script) -> Iterator[Finding]:
         wrong, taker = found[0], given.takers[0]
         assert wrong is not None
         kind = script.type_of(given.node)
-        if isinstance(kind, Instance) and is_annotated(script, given.node, kind.cls):
+        if isinstance(kind, Instance) and (said := annotated(script, given.node, kind.cls)):
             yield Finding(
                 RULE.id, "warning", script.span(given.node),
-                f"`{ast.unparse(given.node)}` is annotated as `{kind.cls}`, and `{taker.path}`{given.why} takes"
-                f" {wrong.takes}: {ONE_IS_WRONG}.{_advice(script, taker, given.node)}", taker.path,
+                f"{said}, and `{taker.path}`{given.why} takes {wrong.takes}: {ONE_IS_WRONG}."
+                f"{_advice(script, taker, given.node)}", taker.path,
             )  # fmt: skip
             continue
         yield Finding(

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 OF_ELEMENTS = "The elements of"  # how notes begin on what they have
 _FEW = 3
+_CONTEXT = f"{TYPES}Context"
 # Parts whose members say what the same names are worth there, how it is drawn, or what is done with it: the weight of
 # gravity, the size of a baked image. None of them is what the name means of the thing.
 _OF_OTHER_USE = frozenset({"EffectorWeights", "BakeSettings", "VolumeDisplay", "ParticleSettingsTextureSlot"})
@@ -149,8 +150,9 @@ def _beside(owner: str, name: str, reader: BaseReader) -> Within | None:
         if (key(one.name) == key(cls) or is_alone) and (member := _own_of(one.owner, name, reader)):
             holder = one.owner.removeprefix(TYPES)
             return Within(member, f"`{holder}` has it (`{member.path}`): this is its `.{one.name}`.")
-    # What a whole data-block has beside it is another thing: an object's force field, for its rigid body.
-    is_part_too = is_alone and not reader.descends(holding[0].owner, ID)
+    # What a whole data-block has beside it is another thing, as an object's force field is for its rigid body; and so
+    # is what the context has.
+    is_part_too = is_alone and holding[0].owner != _CONTEXT and not reader.descends(holding[0].owner, ID)
     for part in reader.members(holding[0].owner).values() if is_part_too else ():
         is_part = part.type == "pointer" and part.is_read_only and part.target not in {cls, *_OF_OTHER_USE}
         if is_part and (member := _own_of(f"{TYPES}{part.target}", name, reader)) and member.owner != ID:

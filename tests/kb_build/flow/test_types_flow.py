@@ -42,6 +42,7 @@ if TYPE_CHECKING:
         ("import bpy\ngetattr(bpy.context, 'scene')", "Scene"),
         ("import bpy\nbpy.data.objects.get('a')", "Object"),
         ("import bpy\nbpy.data.objects[:][0]", "Object"),
+        ("import bpy\nlater = None\nlater[:80]", "Unknown"),
         ("from mathutils import Vector, Matrix\nMatrix() @ Vector()", "mathutils.Vector"),
         ("from mathutils import Vector\n2 * Vector()", "mathutils.Vector"),
         ("from mathutils import Vector, Matrix\nVector() @ Matrix()", "mathutils.Vector"),

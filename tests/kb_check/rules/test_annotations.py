@@ -157,6 +157,33 @@ def test_the_object_of_what_is_annotated_as_its_data_is_a_doubt(
     assert finding.instead[0].startswith("bpy.types.Object.")
 
 
+_RETURNED = """
+import bpy
+
+
+def found(camera, *others) -> {annotation}:
+    return bpy.data.cameras.get(camera) if isinstance(camera, str) else camera
+
+
+def look(camera, place):
+    camera = found(camera)
+    {use}
+"""
+
+
+@pytest.mark.parametrize("use", ["camera.matrix_world = place", "return found(place).location"])
+def test_what_a_function_is_annotated_to_return_is_a_doubt(rule_checker: Checker, use: str) -> None:
+    code = _RETURNED.format(annotation="bpy.types.Camera", use=use)
+    (finding,) = rule_checker.check(code)
+    assert finding.severity == "warning"
+    assert "`found` is annotated to return `bpy.types.Camera`" in finding.message
+    more = code.replace("camera = found(camera)", "camera = bpy.data.cameras[0]").replace(
+        "found(place).", "camera."
+    )
+    (finding,) = rule_checker.check(more)
+    assert finding.severity == "error"
+
+
 @pytest.mark.parametrize(
     ("annotation", "use"),
     [

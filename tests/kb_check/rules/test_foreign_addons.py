@@ -48,6 +48,8 @@ def _severities(checker: Checker, code: str) -> list[str]:
         "bpy.ops.preferences.addon_enable(module=NAME)",
         'addon_utils.enable("stranger", default_set=True)',
         'addon_utils.enable(module_name="stranger")',
+        # Which one is not known here.
+        "def turn_on(name: str):\n    bpy.ops.preferences.addon_enable(module=name)",
         'for name in ("rigify", "stranger"):\n    addon_utils.enable(name)',
         'bpy.ops.extensions.package_install(repo_index=0, pkg_id="stranger")',
         'print("stranger" in bpy.context.preferences.addons)',
@@ -63,7 +65,7 @@ def test_what_a_foreign_addon_may_register_is_no_error(rule_checker: Checker, en
 
 
 @pytest.mark.parametrize(
-    "enabling", ["", "addon_utils.enable(name)", 'settings.enable("stranger")']
+    "enabling", ["", "addon_utils.enable(__package__)", 'settings.enable("stranger")']
     + [f'bpy.ops.preferences.addon_enable(module="{name}")' for name in ("rigify", "io_scene_fbx")],
 )  # fmt: skip
 def test_without_one_nothing_may(rule_checker: Checker, enabling: str) -> None:

@@ -1,4 +1,4 @@
-"""Parameters whose type rests on nothing but what the script says of it: an annotation, which Python does not check."""
+"""What rests on nothing but what the script says of it: on an annotation, which Python does not check."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import walk
+from kb_build.flow.types import LocalFunction
 from kb_check.script import once_for_each
 from kb_check.syntax.literals import bound_names
 
@@ -19,10 +20,17 @@ _DEEPEST = 6  # elements of elements
 _WORD = re.compile(r"\w+")
 
 
-def is_annotated(script: Script, node: ast.expr, cls: str) -> bool:
-    """Whether an expression is a parameter, or an element of one, that is of a class by its annotation alone."""
-    name = _whole(script, node)
-    return name is not None and cls.rpartition(".")[2] in _annotation_around(script, name)
+def annotated(script: Script, node: ast.expr, cls: str) -> str:
+    """Where the script says that an expression is of a class, if nothing but that tells: the annotation of a parameter
+    that it is, or is an element of, or of what the function returns that it comes of. Empty where more is known.
+    """
+    name, called = _whole(script, node), cls.rpartition(".")[2]
+    if name is not None and called in _annotation_around(script, name):
+        return f"`{ast.unparse(node)}` is annotated as `{cls}`"
+    for call in [node] if isinstance(node, ast.Call) else _calls_around(script, name) if name else ():
+        if called in _annotation_of_result(script, call):
+            return f"`{ast.unparse(call.func)}` is annotated to return `{cls}`"
+    return ""
 
 
 def _whole(script: Script, node: ast.expr) -> ast.Name | None:
@@ -62,6 +70,43 @@ def _iterated(script: Script, node: ast.Name) -> ast.expr | None:
 @once_for_each
 def _annotation_around(script: Script, node: ast.Name) -> frozenset[str]:
     """The words of the annotation of the parameter that a name stands for; none where the name holds more than that."""
+    function = _function_around(script, node)
+    argument = _parameters(function).get(node.id) if function else None
+    if function is None or argument is None or argument.annotation is None:
+        return frozenset()
+    return _words(argument.annotation) if _bound_in(script, function).count(node.id) == 1 else frozenset()
+
+
+@once_for_each
+def _calls_around(script: Script, node: ast.Name) -> list[ast.Call]:
+    """The calls whose results a name stands for where it is used; none if something else gives it as well."""
+    function = _function_around(script, node)
+    if function is None:
+        return []
+    bound = _bound_in(script, function).count(node.id) - (node.id in _parameters(function))
+    calls: list[ast.Call] = []
+    for part in walk(function):
+        match part:
+            case ast.Assign(targets=[ast.Name(id=node.id)], value=ast.Call() as call):
+                calls.append(call)
+            case _:
+                pass
+    return calls if len(calls) == bound else []
+
+
+def _annotation_of_result(script: Script, call: ast.Call) -> frozenset[str]:
+    """The words of the annotation of what a function of the script's own returns."""
+    kind = script.type_of(call.func)
+    match script.analysis.functions[kind.number] if isinstance(kind, LocalFunction) else None:
+        case ast.FunctionDef(returns=ast.expr() as said) | ast.AsyncFunctionDef(returns=ast.expr() as said):
+            return _words(said)
+        case _:
+            return frozenset()
+
+
+@once_for_each
+def _function_around(script: Script, node: ast.Name) -> FunctionDefinition | None:
+    """The innermost function around a name that binds it."""
     around = [
         function
         for function in script.all(ast.FunctionDef, ast.AsyncFunctionDef)
@@ -69,10 +114,8 @@ def _annotation_around(script: Script, node: ast.Name) -> frozenset[str]:
     ]
     for function in sorted(around, key=lambda one: -one.lineno):
         if node.id in _bound_in(script, function):
-            argument = _parameters(function).get(node.id)
-            once = _bound_in(script, function).count(node.id) == 1
-            return _words(argument.annotation) if argument and argument.annotation and once else frozenset()
-    return frozenset()
+            return function
+    return None
 
 
 @once_for_each
