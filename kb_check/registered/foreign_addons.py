@@ -64,6 +64,18 @@ def foreign_addon(analyses: Collection[Analysis], own: Collection[str]) -> str:
     return ""
 
 
+def enables_any(analyses: Collection[Analysis]) -> bool:
+    """Whether scripts enable an add-on by a name that they compute, other than their own."""
+    return any(
+        ast.unparse(argument) not in _OWN_NAMES
+        and not any(literal_texts(analysis.types.get(argument, UNKNOWN)))
+        for analysis in analyses
+        for node in (walk(analysis.tree) if analysis.tree else ())
+        if isinstance(node, ast.Call)
+        for argument in _names_given(node)
+    )
+
+
 def brought_addons(analyses: Collection[Analysis]) -> frozenset[str]:
     """The add-ons that Blender brings which scripts enable, ask for, or take something from."""
     return frozenset(
@@ -95,21 +107,23 @@ def _enabled(analysis: Analysis) -> Iterator[str]:
                 | ast.Call(func=ast.Attribute(value=place, attr="get" | "check"), args=[asked, *_])
             ) if _lists_addons(place):
                 yield from literal_texts(analysis.types.get(asked, UNKNOWN))
-            case ast.Call(func=ast.Attribute(value=owner, attr=called)) if called in _ENABLING:
-                is_by_place = isinstance(owner, ast.Name) and owner.id == _BY_PLACE
-                if called == "enable" and not is_by_place:
-                    continue
-                given = [keyword.value for keyword in node.keywords if keyword.arg == _ENABLING[called]]
-                for argument in [*given, *(node.args[:1] if is_by_place else ())]:
-                    yield from [*literal_texts(analysis.types.get(argument, UNKNOWN))] or _computed(argument)
+            case ast.Call():
+                for argument in _names_given(node):
+                    yield from literal_texts(analysis.types.get(argument, UNKNOWN))
             case _:
                 pass
 
 
-def _computed(argument: ast.expr) -> tuple[str, ...]:
-    """What stands for the name of an add-on that is not known: the expression, if it is not the script's own name."""
-    text = ast.unparse(argument)
-    return () if text in _OWN_NAMES else (text,)
+def _names_given(call: ast.Call) -> list[ast.expr]:
+    """What a call that enables an add-on is given for its name; none for other calls."""
+    called = call.func.attr if isinstance(call.func, ast.Attribute) else ""
+    if called not in _ENABLING or not isinstance(call.func, ast.Attribute):
+        return []
+    is_by_place = isinstance(call.func.value, ast.Name) and call.func.value.id == _BY_PLACE
+    if called == "enable" and not is_by_place:
+        return []
+    given = [keyword.value for keyword in call.keywords if keyword.arg == _ENABLING[called]]
+    return [*given, *(call.args[:1] if is_by_place else ())]
 
 
 def _lists_addons(node: ast.expr) -> bool:

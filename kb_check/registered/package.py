@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.core import ANY
 from kb_build.flow.source_files import module_name
 from kb_build.flow.trees import walk
-from kb_check.registered.foreign_addons import brought_addons, foreign_addon
+from kb_check.registered.foreign_addons import brought_addons, enables_any, foreign_addon
 from kb_check.registered.package_roots import package_root
 
 if TYPE_CHECKING:
@@ -70,6 +70,11 @@ class Package:
         files were added.
         """
         return foreign_addon(self._analyses, self._files)
+
+    @cached_property
+    def enables_any_addon(self) -> bool:
+        """Whether a file enables an add-on by a name that it computes. Asked for once all files were added."""
+        return enables_any(self._analyses)
 
     @cached_property
     def brought_addons(self) -> frozenset[str]:

@@ -42,10 +42,9 @@ def lacking_finding(
             rule, "warning", script.name_span(row.node), told, lacking.symbol, (), None, absent_paths(row)
         )
     message = f"{lacking.message} {new_value(script, row, lacking.instead)}".rstrip()
-    if addon := _registering(script, row, lacking):
+    if registering := _registering(script, row, lacking):
         severity = "note"
-        told = f"The add-on `{addon}`, which is enabled or asked for here and cannot be looked into,"
-        message += f" {told} may register it."
+        message += f" {registering} may register it."
     return Finding(
         rule, severity, script.name_span(row.node), message, lacking.symbol, lacking.instead,
         renaming(script, row, lacking), absent_paths(row),
@@ -60,19 +59,29 @@ def _brought(script: Script, row: Resolution) -> str:
 
 
 def _registering(script: Script, row: Resolution, lacking: Lacking) -> str:
-    """The add-on that may register a name: it is no misspelling, and no version has had it, or it is an operator that
-    went without successor, as those of add-ons that became extensions; empty for none.
+    """What may register a name, in words: it is no misspelling, and no version has had it, or it is an operator that
+    went without successor, as those of add-ons that became extensions; empty for nothing.
     """
     is_operator = all(owner.startswith(OPERATORS.rstrip(".")) for owner in row.missing)
     if lacking.replacement or (lacking.removed and (lacking.instead or not is_operator)):
         return ""
     if row.kind == "value" and row.missing == (_ENGINES,):
         with_engines = script.package.brought_addons & _WITH_ENGINES
-        return script.package.foreign_addon or next(iter(with_engines), "")
+        return _foreign(script.package.foreign_addon or next(iter(with_engines), ""))
     if row.kind not in REGISTERED or not row.missing:
         return ""
+    if is_operator and script.package.enables_any_addon:
+        return "An add-on, which is enabled here by a name that is computed,"
     is_open = all(may_register(script.api, owner) for owner in row.missing)
-    return script.package.foreign_addon if is_open else ""
+    return _foreign(script.package.foreign_addon) if is_open else ""
+
+
+def _foreign(addon: str) -> str:
+    return (
+        f"The add-on `{addon}`, which is enabled or asked for here and cannot be looked into,"
+        if addon
+        else ""
+    )
 
 
 def absent_paths(row: Resolution) -> tuple[str, ...]:

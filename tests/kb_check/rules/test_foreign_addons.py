@@ -48,8 +48,6 @@ def _severities(checker: Checker, code: str) -> list[str]:
         "bpy.ops.preferences.addon_enable(module=NAME)",
         'addon_utils.enable("stranger", default_set=True)',
         'addon_utils.enable(module_name="stranger")',
-        # Which one is not known here.
-        "def turn_on(name: str):\n    bpy.ops.preferences.addon_enable(module=name)",
         'for name in ("rigify", "stranger"):\n    addon_utils.enable(name)',
         'bpy.ops.extensions.package_install(repo_index=0, pkg_id="stranger")',
         'print("stranger" in bpy.context.preferences.addons)',
@@ -70,6 +68,21 @@ def test_what_a_foreign_addon_may_register_is_no_error(rule_checker: Checker, en
 )  # fmt: skip
 def test_without_one_nothing_may(rule_checker: Checker, enabling: str) -> None:
     assert _severities(rule_checker, _USE.format(enabling=enabling)) == ["error"] * 5
+
+
+@pytest.mark.parametrize(
+    "enabling",
+    [
+        "def turn_on(name: str):\n    bpy.ops.preferences.addon_enable(module=name)",
+        "import sys\naddon_utils.enable(sys.argv[-1])",
+    ],
+)
+def test_operators_may_be_those_of_an_addon_with_a_computed_name(
+    rule_checker: Checker, enabling: str
+) -> None:
+    found = rule_checker.check(_USE.format(enabling=enabling))
+    assert [one.severity for one in found] == ["note"] * 2 + ["error"] * 3
+    assert all("by a name that is computed, may register it" in one.message for one in found[:2])
 
 
 def test_what_blender_had_or_a_misspelling_stays_an_error(rule_checker: Checker) -> None:
