@@ -19,12 +19,13 @@ A value that went and that nothing took the place of is a note, once for all its
 over from another Blender, and does no harm.
 
 Not reported: an empty text, since Blender gives one where a file holds a value that this version does not know; an old
-value beside the one that took its place (``ob.type in {"GPENCIL", "GREASEPENCIL"}``, or the same with ``or``).
+value beside the one that took its place (``ob.type in {"GPENCIL", "GREASEPENCIL"}``, the same with ``or`` or ``elif``).
 """
 
 from __future__ import annotations
 
 import ast
+from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -38,7 +39,7 @@ from kb_check.rules.lacking import lacking_finding
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
     from kb_build.symbols.records import EnumItem, Symbol
     from kb_check.script import Script
@@ -140,27 +141,51 @@ def _never_had(symbol: Symbol) -> list[EnumItem]:
 
 @once_per_script
 def _beside(script: Script) -> dict[ast.AST, frozenset[str]]:
-    """Of each text that something is compared with: all texts of the container that it is in, or of the comparisons of
-    the same thing beside it: ``engine == "A" or engine == "B"``.
+    """Of each text that something is compared with: all texts of the container that it is in, and of the comparisons of
+    the same thing beside it, ``engine == "A" or engine == "B"``, or in the branches of one ``if``.
     """
     found: dict[ast.AST, frozenset[str]] = {}
-    for either in script.all(ast.BoolOp):
-        asked: dict[str, list[ast.Constant]] = {}
-        for one in either.values if isinstance(either.op, ast.Or) else ():
-            match one:
-                case ast.Compare(left=left, ops=[ast.Eq()], comparators=[ast.Constant(value=str()) as text]):
-                    asked.setdefault(ast.unparse(left), []).append(text)
-                case _:
-                    pass
+    for tests in _beside_each_other(script):
+        asked: defaultdict[str, list[ast.Constant]] = defaultdict(list)
+        for left, text in _compared(tests):
+            asked[left].append(text)
         for texts in asked.values():
             found.update(dict.fromkeys(texts, frozenset(str(text.value) for text in texts)))
-    for node in script.all(ast.Compare):
-        for container in node.comparators:
-            if isinstance(container, (ast.Tuple, ast.List, ast.Set)):
-                texts = [item for item in container.elts if isinstance(item, ast.Constant)]
-                whole = frozenset(item.value for item in texts if isinstance(item.value, str))
-                found.update(dict.fromkeys(texts, whole))
     return found
+
+
+def _beside_each_other(script: Script) -> Iterator[Sequence[ast.expr]]:
+    """The conditions that choose between one and the other, the longest rows last."""
+    for alone in script.all(ast.Compare):
+        yield (alone,)
+    for either in script.all(ast.BoolOp):
+        yield (either,)
+    in_chains: set[ast.If] = set()
+    for first in script.all(ast.If):
+        chain = [first]
+        while len(chain[-1].orelse) == 1 and isinstance(following := chain[-1].orelse[0], ast.If):
+            chain.append(following)
+        if first not in in_chains:
+            yield [branch.test for branch in chain]
+        in_chains.update(chain)
+
+
+def _compared(tests: Iterable[ast.expr]) -> Iterator[tuple[str, ast.Constant]]:
+    """(the source of what is compared, a text) of conditions that hold for one of some texts."""
+    for test in tests:
+        match test:
+            case ast.BoolOp(op=ast.Or(), values=values):
+                yield from _compared(values)
+            case ast.Compare(left=left, ops=[ast.Eq()], comparators=[ast.Constant(value=str()) as text]):
+                yield ast.unparse(left), text
+            case ast.Compare(
+                left=left, comparators=[ast.Tuple(elts=items) | ast.List(elts=items) | ast.Set(elts=items)]
+            ):
+                for item in items:
+                    if isinstance(item, ast.Constant) and isinstance(item.value, str):
+                        yield ast.unparse(left), item
+            case _:
+                pass
 
 
 RULE = Rule("never-true", "warning", "A comparison with a value that the enumeration never has", _check)

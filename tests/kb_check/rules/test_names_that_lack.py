@@ -37,6 +37,26 @@ def test_a_comparison_that_never_holds_is_a_warning(checker: Checker) -> None:
     assert (finding.rule, finding.severity) == ("unknown-value", "error")
 
 
+@pytest.mark.parametrize(
+    ("second", "found"),
+    [
+        ("elif ob.type == 'GREASEPENCIL'", 0),
+        ("elif ob.type in ('MESH', 'GREASEPENCIL')", 0),
+        ("elif ob.type == 'MESH':\n    pass\nelif ob.type == 'GREASEPENCIL'", 0),
+        ("elif ob.type == 'MESH'", 1),
+        ("elif other.type == 'GREASEPENCIL'", 1),
+        ("if ob.type == 'GREASEPENCIL'", 1),
+    ],
+)
+def test_an_old_value_is_right_in_a_chain_that_has_the_new_one(
+    checker: Checker, second: str, found: int
+) -> None:
+    code = (
+        f"import bpy\nob, other = bpy.data.objects\nif ob.type == 'GPENCIL':\n    pass\n{second}:\n    pass"
+    )
+    assert [one.rule for one in checker.check(code)] == ["never-true"] * found
+
+
 def test_a_socket_by_a_former_name_that_still_works_is_no_finding(checker: Checker) -> None:
     code = """
         import bpy
