@@ -110,6 +110,11 @@ class Guards(Expressions):
                     found |= EVERYTHING  # what follows never runs: it may name what only stubs have
                 case ast.Attribute(value=ast.Attribute(attr="build_options")):
                     found |= EVERYTHING  # what another build has
+                case ast.Call(
+                    func=ast.Name(id="version") | ast.Attribute(attr="version"),
+                    args=[ast.Constant(value="bpy")],
+                ):
+                    found |= EVERYTHING  # that of the package, by importlib.metadata
                 case ast.Name() if chooses and not found.chosen and self._may_choose(part):
                     found |= CHOSEN
                 case ast.Call():

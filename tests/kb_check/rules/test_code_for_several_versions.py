@@ -119,6 +119,15 @@ READY = {
         if int(parts[0]) < 5:
             print(scene.node_tree)
     """,
+    "the version of the package": """
+        from importlib.metadata import version
+        try:
+            IS_OLD = version("bpy").split(".")[0] == "4"
+        except Exception:
+            IS_OLD = False
+        if IS_OLD:
+            print(scene.node_tree)
+    """,
     "numbers of the version in a list": """
         numbers = [int(part) for part in bpy.app.version]
         if numbers[0] < 5:
