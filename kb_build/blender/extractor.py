@@ -33,6 +33,12 @@ if TYPE_CHECKING:
 _EXTRACTOR = Program(
     "kb_build.blender.inside.extract_api", {"kb_build.blender.inside": Path(__file__).parent / "inside"}
 )
+# Of glibc; elsewhere it means nothing. Hundreds of trials run in copies of Blender's process: few large pages are
+# copied sooner than many, and memory that is given back is wanted again at once.
+_MEMORY = {
+    "GLIBC_TUNABLES": "glibc.malloc.hugetlb=1:glibc.malloc.mmap_threshold=1073741824:"
+    "glibc.malloc.trim_threshold=4294967296"
+}
 _SECONDS = 600.0
 _CRASHES = 4
 _LEAST_FREE = 64 << 10  # bytes: an extract is written in pieces of about so many
@@ -102,7 +108,14 @@ def _run(runtime: Runtime, part: Path, log: Path) -> None:
             given.write_text(json.dumps({"former": former, "skipped": skipped}), encoding="utf-8")
             try:
                 with docstrings_ahead(part):
-                    run_program(runtime, _EXTRACTOR, [str(given), str(part)], timeout=_SECONDS, log=log)
+                    run_program(
+                        runtime,
+                        _EXTRACTOR,
+                        [str(given), str(part)],
+                        timeout=_SECONDS,
+                        log=log,
+                        variables=_MEMORY,
+                    )
                 break
             except ProgramFailed as error:
                 if shutil.disk_usage(part.parent).free < _LEAST_FREE:

@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -40,6 +40,7 @@ _SYSTEM_CERTIFICATES = Path("/etc/ssl/certs/ca-certificates.crt")  # Linux: else
 _INSTALL_SECONDS = 1800.0
 _VERSION_SECONDS = 60.0
 _LONGEST_LINE = 200
+_NONE: Mapping[str, str] = {}
 _PASSED_ON = frozenset(
     {"HOME", "PATH", "TMPDIR", "TEMP", "TMP", "TZ", "USER", "LD_LIBRARY_PATH", "SYSTEMROOT"}
 )
@@ -86,15 +87,40 @@ def find_runtime(
     return _managed(wanted, home / "runtimes", progress, install=install)
 
 
-def run_program(runtime: Runtime, program: Program, args: list[str], *, timeout: float, log: Path) -> None:
+def run_program(  # noqa: PLR0913 - what is run, and how
+    runtime: Runtime,
+    program: Program,
+    args: list[str],
+    *,
+    timeout: float,
+    log: Path,
+    variables: Mapping[str, str] = _NONE,
+) -> None:
     """Runs a program with ``args`` in Blender's interpreter, as ``run_script`` does a script."""
-    run_script(runtime, BOOT, program.arguments(*args), timeout=timeout, log=log, name=program.module)
+    run_script(
+        runtime,
+        BOOT,
+        program.arguments(*args),
+        timeout=timeout,
+        log=log,
+        name=program.module,
+        variables=variables,
+    )
 
 
-def run_script(  # noqa: PLR0913 - what is run, and how
-    runtime: Runtime, script: Path, args: list[str], *, timeout: float, log: Path, name: str = ""
+def run_script(  # noqa: PLR0913 - likewise
+    runtime: Runtime,
+    script: Path,
+    args: list[str],
+    *,
+    timeout: float,
+    log: Path,
+    name: str = "",
+    variables: Mapping[str, str] = _NONE,
 ) -> None:
     """Runs ``script`` with ``args`` in Blender's interpreter; its output goes to the file ``log``.
+
+    ``variables`` are added to its environment.
 
     The process gets none of the environment's secrets and no settings of the user's Blender; its temporary files go
     when it ends. It is killed with its children after ``timeout`` seconds or on Ctrl-C. Raises ProgramFailed with the
@@ -106,7 +132,7 @@ def run_script(  # noqa: PLR0913 - what is run, and how
         try:
             # A Blender that is killed leaves its temporary folder: in this one, it goes with it.
             temporary = dict.fromkeys(("TMPDIR", "TEMP", "TMP"), settings)
-            environment = clean_environment(Path(settings)) | temporary
+            environment = clean_environment(Path(settings)) | temporary | {**variables}
             run_group(command, environment=environment, timeout=timeout, log=log)
         except CommandFailed as error:
             raise ProgramFailed(
