@@ -52,14 +52,18 @@ def apart(work):
     return status_of(work, SECONDS) == 0
 
 
-def crashes(work):
-    """Whether work crashes a process of its own. One that comes to no end does not."""
-    status = status_of(work, MOMENT)
+def is_crash(status):
+    """Whether a process with this status has crashed. One that was ended after some time has not."""
     return os.WIFSIGNALED(status) and os.WTERMSIG(status) in FAULTS
 
 
-def sent_apart(work, seconds=SECONDS):
-    """(whether it came to its end, what it sent) of work in a process of its own, which is ended after some time.
+def crashes(work):
+    """Whether work crashes a process of its own."""
+    return is_crash(status_of(work, MOMENT))
+
+
+def sent_with_status(work, seconds=SECONDS):
+    """(its status, what it sent) of a process of its own that does work, and is ended after some time.
 
     ``work`` is given what it sends rows with; what was sent before Blender ended is there.
     """
@@ -73,9 +77,15 @@ def sent_apart(work, seconds=SECONDS):
             work(send)
             return True
 
-        ended = status_of(sending, seconds) == 0
+        status = status_of(sending, seconds)
         file.seek(0)
-        return ended, [json.loads(line) for line in file]
+        return status, [json.loads(line) for line in file]
+
+
+def sent_apart(work):
+    """The same with whether it came to its end instead of its status."""
+    status, rows = sent_with_status(work)
+    return status == 0, rows
 
 
 def ended_at(names, do):

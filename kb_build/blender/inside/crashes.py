@@ -13,12 +13,18 @@ from functools import partial
 import bpy
 
 from . import rna
-from .apart import MOMENT, apart, crashes, sent_apart
-from .instances.making import SEQUENCER_SCENE, called, no_sequencer_scene, scratch_scene
-from .instances.new_things import BY_FUNCTIONS, animation, strips
+from .apart import MOMENT, apart, crashes, is_crash, sent_apart, sent_with_status
+from .instances.making import (
+    SEQUENCER_SCENE,
+    called,
+    has_sequencer_scene,
+    no_sequencer_scene,
+    scratch_scene,
+)
+from .instances.new_things import BY_FUNCTIONS, animation, constraints, node_trees, strips
 from .nodes import TREES
 from .nodes import make as make_in
-from .refusals import objects, plain_argument
+from .refusals import LEAVING_GAPS, objects, plain_argument
 
 # Each setting and each function is tried on so many things.
 MOST_THINGS = 3
@@ -52,6 +58,10 @@ def nodes():
         if isinstance(cls, type) and issubclass(cls, bpy.types.Node):
             for node in list(make_in(trees, name).values())[:1]:
                 yield called(node), node
+
+
+# Their things stay, and are small: all of them are tried together.
+STAYING = (nodes, constraints, node_trees)
 
 
 def whole_strips():
@@ -123,10 +133,12 @@ def tried(run, *, unset=True):
 
 
 class Assignment:
-    """None for a pointer."""
+    """None for a pointer of an owner, which belongs to what was ``made``."""
 
-    def __init__(self, owner, prop):
-        self.owner, self.item = owner, prop
+    leaves_gaps = False
+
+    def __init__(self, made, owner, prop):
+        self.made, self.owner, self.item = made, owner, prop
         self.path = rna.path_of(owner.bl_rna, prop.identifier)
 
     def run(self):
@@ -151,8 +163,9 @@ class Call:
     Raises UnknownArgumentError.
     """
 
-    def __init__(self, owner, function, path, things):
-        self.owner, self.item, self.path = owner, function, path
+    def __init__(self, made, owner, function, path, things):
+        self.made, self.owner, self.item, self.path = made, owner, function, path
+        self.leaves_gaps = owner.bl_rna.identifier in LEAVING_GAPS
         is_collection = isinstance(owner, bpy.types.bpy_prop_collection)
         self.things = [*(owner if is_collection else ()), *things]
         required = [item for item in function.parameters if item.is_required and not item.is_output]
@@ -182,13 +195,14 @@ class Call:
         ``without``: what must not be None; ``none``: each argument of which None alone crashes Blender; ``left_out``:
         those of which giving none does; ``always``: that nothing prevented it.
         """
-        if not self.ends(unset=False):
+        if has_sequencer_scene() and not self.ends(unset=False):
             return {"without": SEQUENCER_SCENE}
         given = self.filled()
         if None in given.values():
             return {"none": list(given)} if len(given) == 1 else {}
         if given and not self.ends(**given):
-            alone = [name for name in given if self.ends(**{**given, name: None})]
+            # Of one alone it is known: that is the call that crashed.
+            alone = [name for name in given if len(given) == 1 or self.ends(**{**given, name: None})]
             return {"none": alone} if alone else {}
         further = list(self.further())
         for count in range(1, MOST_FURTHER + 1):
@@ -216,7 +230,9 @@ class FilledCall(Call):
 
     def causes(self):
         """``without``: what must not be None. Of other causes nothing is known: it may be of just these things."""
-        return {} if self.ends(unset=False, **self.filled()) else {"without": SEQUENCER_SCENE}
+        if has_sequencer_scene() and not self.ends(unset=False, **self.filled()):
+            return {"without": SEQUENCER_SCENE}
+        return {}
 
 
 def try_each(attempts, send):
@@ -232,41 +248,54 @@ class Trial:
     ``counts`` are how often each setting and function was tried already.
     """
 
-    def __init__(self, send, counts):
-        self.send = send
+    def __init__(self, observer, counts, send):
+        self.observer = observer
         self.counts = counts
+        self.send = send
         self.survived = set()
         self.things = []
 
-    def look(self, label, owners):
-        """Tries on things what was not tried often enough: in one process, and what ended that in one of its own."""
-        left = [attempt for owner in owners for attempt in self.attempts(owner)]
-        while left:
-            done, begun = sent_apart(partial(try_each, left), MOMENT)
-            place = len(left) if done else begun[-1] if begun else 0
-            self.survived.update(attempt.path for attempt in left[:place])
-            if done:
-                break
-            last = left[place]
-            left = left[place + 1 :]
-            if crashes(lambda last=last: tried(last.run)) and (causes := last.causes()):
-                is_own = last.path.startswith(f"bpy.types.{last.owner.bl_rna.identifier}.")
-                if is_own:
-                    self.counts[self.key(last.item)] = MOST_THINGS
-                self.send({"path": last.path, "made": label, "is_own": is_own, **causes})
-        self.things += owners
+    def look(self, made):
+        """Tries what was not tried often enough on (label, thing) pairs and what belongs to them, all in one process.
 
-    def attempts(self, owner):
+        What ended that is the first in another one, with the rest behind it: what ends that too does so by itself. What
+        spoils a mesh for the others is the last.
+        """
+        left = []
+        for label, thing in made:
+            owners = list(reached(self.observer, thing))
+            left += [attempt for owner in owners for attempt in self.attempts(label, owner)]
+            self.things += owners
+        left.sort(key=lambda attempt: attempt.leaves_gaps)
+        while left:
+            status, begun = sent_with_status(partial(try_each, left), MOMENT)
+            place = len(left) if status == 0 else begun[-1] if begun else 0
+            self.survived.update(attempt.path for attempt in left[:place])
+            if place == 0:
+                alone = left.pop(0)
+                if is_crash(status):
+                    self.tell(alone)
+            left = left[place:]
+
+    def tell(self, attempt):
+        """Sends what is to be said of an attempt that crashes Blender by itself, if that is known."""
+        if causes := attempt.causes():
+            is_own = attempt.path.startswith(f"bpy.types.{attempt.owner.bl_rna.identifier}.")
+            if is_own:
+                self.counts[self.key(attempt.item)] = MOST_THINGS
+            self.send({"path": attempt.path, "made": attempt.made, "is_own": is_own, **causes})
+
+    def attempts(self, made, owner):
         """What is tried on a thing; what changes most of it comes last."""
-        calls = list(self.calls(owner))
+        calls = list(self.calls(made, owner))
         yield from calls
         for prop in owner.bl_rna.properties:
             if prop.type == "POINTER" and not prop.is_readonly and self.is_left(prop):
-                yield Assignment(owner, prop)
+                yield Assignment(made, owner, prop)
         for call in calls:
-            yield FilledCall(owner, call.item, call.path, self.things)
+            yield FilledCall(made, owner, call.item, call.path, self.things)
 
-    def calls(self, owner):
+    def calls(self, made, owner):
         """The calls of a thing's functions."""
         struct = owner.bl_rna
         while struct is not None:
@@ -275,7 +304,9 @@ class Trial:
                 is_called = function.use_self and not function.is_registered and name not in NOT_TRIED
                 if is_called and self.is_left(function):
                     with suppress(UnknownArgumentError):
-                        yield Call(owner, function, f"bpy.types.{struct.identifier}.{name}", self.things)
+                        yield Call(
+                            made, owner, function, f"bpy.types.{struct.identifier}.{name}", self.things
+                        )
             struct = struct.base
 
     def is_left(self, item):
@@ -289,19 +320,22 @@ class Trial:
         return str(item.as_pointer())
 
 
-def try_all(make, observer, trial):
+def try_all(make, trial):
     """Tries what one maker makes, and what belongs to it."""
     scratch_scene()
     trial.things.append(bpy.context.evaluated_depsgraph_get())
-    for label, thing, *_ in make():
-        if thing is not None:
-            trial.look(label, list(reached(observer, thing)))
+    made = ((label, thing) for label, thing, *_ in make() if thing is not None)
+    if make in STAYING:
+        trial.look(made)
+    else:
+        for each in made:
+            trial.look([each])
 
 
 def try_apart(make, observer, counts, send):
     """The same in a process of its own."""
-    trial = Trial(send, counts)
-    try_all(make, observer, trial)
+    trial = Trial(observer, counts, send)
+    try_all(make, trial)
     send({"counts": trial.counts, "survived": sorted(trial.survived)})
 
 

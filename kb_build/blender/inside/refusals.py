@@ -35,14 +35,10 @@ MOST_ATTEMPTS = 4
 # What a refusal names: things and what was given.
 GIVEN = re.compile(r"'[^']*'|\"[^\"]*\"|\b" + NAME + r"\b|\b7(?:\.0+)?\b")
 NONE = "returned None"
-NOT_TRIED = frozenset(
-    {
-        # They leave elements that stand for nothing, which crashes whoever reads the mesh.
-        "MeshEdges", "MeshLoops", "MeshLoopTriangles", "MeshPolygons",
-        # Built-in nodes have their sockets.
-        "NodeInputs", "NodeOutputs",
-    }
-)  # fmt: skip
+# Their new elements stand for nothing: who reads such a mesh crashes, or comes to no end.
+LEAVING_GAPS = frozenset({"MeshEdges", "MeshLoops", "MeshLoopTriangles", "MeshPolygons"})
+# Built-in nodes have their sockets.
+NOT_TRIED = LEAVING_GAPS | {"NodeInputs", "NodeOutputs"}
 
 
 def is_adding(function):

@@ -27,6 +27,11 @@ def all_strips(editor):
     return editor.strips if hasattr(editor, "strips") else editor.sequences
 
 
+def has_sequencer_scene():
+    """Whether the sequencer has a scene, in a Blender that knows of one."""
+    return getattr(bpy.context.workspace, "sequencer_scene", None) is not None
+
+
 def no_sequencer_scene():
     """Takes the sequencer's scene away, in a Blender that has one."""
     if hasattr(bpy.context.workspace, "sequencer_scene"):
