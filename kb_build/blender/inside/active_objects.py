@@ -41,9 +41,11 @@ def typed_object(kind):
     return obj
 
 
-def modes(obj):
-    """Puts an object into each of its modes; yields their identifiers."""
+def modes(obj, names=()):
+    """Puts an object into each of its modes, or into those of these names alone; yields their identifiers."""
     for mode in choices("Object", "mode"):
+        if names and mode not in names:
+            continue
         try:
             if obj.mode != mode:
                 bpy.ops.object.mode_set(mode=mode)

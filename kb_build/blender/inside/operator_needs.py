@@ -127,6 +127,8 @@ def parts_needed(known, observer, defaults):
     found = {}
     for calls in (adding_calls(observer), modifier_calls()):
         made = add(calls)
+        for modifier in bpy.context.object.modifiers:
+            modifier.show_viewport = False  # together they multiply what there is to compute
         after_all = run_in_modes(known)
         add(())
         alone, wanting = run_in_modes(known), {}
@@ -135,10 +137,11 @@ def parts_needed(known, observer, defaults):
         for mode, paths in after_all.items():
             free.update(alone.get(mode, ()))
             wanting[mode] = {path: known[path] for path in paths if path not in free}
-        for call in made if any(wanting.values()) else ():
+        asked_in = [mode for mode, wanted in wanting.items() if wanted]
+        for call in made if asked_in else ():
             add([call])
-            for mode in modes(bpy.context.object):
-                running = can_run(wanting.get(mode, {}))
+            for mode in modes(bpy.context.object, asked_in):
+                running = can_run(wanting[mode])
                 defaults.ask(running)
                 for path in running:
                     found.setdefault(path, (mode, []))[1].append(call)

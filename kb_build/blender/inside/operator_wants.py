@@ -214,9 +214,7 @@ class Wants:
     def with_object(self, tried, obj, kind):
         """A setting with one object in its modes."""
         setting = tried.setting
-        for mode in modes(obj):
-            if setting.modes and mode not in setting.modes:
-                continue
+        for mode in modes(obj, setting.modes):
             tried.modes[kind].append(mode)
             places = [("", nullcontext())] if not setting.of_area else []
             places += [
