@@ -47,12 +47,12 @@ def attempts(make, observer):
     for _, made, *_ in make():
         for struct in observer.parts(made) if made is not None else ():
             for prop in struct.bl_rna.properties:
-                path = path_of(struct.bl_rna, prop.identifier)
-                is_asked = prop.type == "POINTER" and not prop.is_readonly
-                kinds = given.get(prop.fixed_type.identifier, {}) if is_asked else {}
+                if prop.type != "POINTER" or prop.is_readonly or prop.fixed_type.identifier not in given:
+                    continue
+                path, kinds = path_of(struct.bl_rna, prop.identifier), given[prop.fixed_type.identifier]
                 for kind, thing in kinds.items():
                     yield path, kind, partial(outcome, struct, prop.identifier, thing)
-                if kinds and isinstance(struct.id_data, getattr(bpy.types, prop.fixed_type.identifier)):
+                if isinstance(struct.id_data, getattr(bpy.types, prop.fixed_type.identifier)):
                     yield path, ITSELF, partial(outcome, struct, prop.identifier, struct.id_data)
 
 

@@ -37,15 +37,25 @@ def version_text(version):
     return f"{version[0]}.{version[1]}" if version and any(version) else ""
 
 
+@functools.cache
+def declared(rna):
+    """name → (address, the class whose own it is) of each property of a class; of two of one name that of the first,
+    which Blender finds by it.
+    """
+    inherited, found = declared(rna.base) if rna.base is not None else {}, {}
+    for prop in rna.properties:
+        name, pointer = prop.identifier, prop.as_pointer()
+        if name not in found:
+            known = inherited.get(name)
+            found[name] = known if known and known[0] == pointer else (pointer, rna.identifier)
+    return found
+
+
 def declaring_class(rna, name):
     """The class whose own property it is, seen from one of its descendants."""
-    pointer = rna.properties[name].as_pointer()
-    while rna.base is not None:
-        inherited = rna.base.properties.get(name)
-        if inherited is None or inherited.as_pointer() != pointer:
-            break
-        rna = rna.base
-    return rna.identifier
+    if name not in declared(rna):
+        declared.cache_clear()  # it was registered since
+    return declared(rna)[name][1]
 
 
 def path_of(rna, name):

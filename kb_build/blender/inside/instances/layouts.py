@@ -92,17 +92,26 @@ def computed_choices(rna):
                 yield path, function.identifier, item.identifier, names
 
 
+def asked_pointers(rna):
+    """Name → path where it is declared, of the pointers that instances are asked for."""
+    return {
+        prop.identifier: path_of(rna, prop.identifier)
+        for prop in rna.properties
+        if prop.type == "POINTER" and prop.identifier not in NOT_ASKED
+    }
+
+
 class Layout:
-    """What there is to read in the instances of a class; ``pointers`` and ``collections``: name → path where it is
-    declared. ``unassigned`` are the pointers to what a script cannot make by itself and assign, ``writable`` all that
-    RNA lets be assigned.
+    """What there is to read in the instances of a class, with these ``pointers``; ``collections``: name → path where it
+    is declared. ``unassigned`` are the pointers to what a script cannot make by itself and assign, ``writable`` all
+    that RNA lets be assigned.
     """
 
-    def __init__(self, rna):
+    def __init__(self, rna, pointers):
         named = rna.name_property.identifier if rna.name_property else "name"
         left_out = {named, "name"}
         self.fields = []
-        self.pointers = {}
+        self.pointers = pointers
         self.unassigned = {}
         self.collections = {}
         self.writable = {}
@@ -111,10 +120,8 @@ class Layout:
             if not (prop.is_readonly or prop.is_registered or prop.type == "COLLECTION"):
                 self.writable[name] = path_of(rna, name)
             if prop.type == "POINTER":
-                if name not in NOT_ASKED:
-                    self.pointers[name] = path_of(rna, name)
-                    if prop.is_readonly or not is_data_block(prop.fixed_type):
-                        self.unassigned[name] = self.pointers[name]
+                if name in pointers and (prop.is_readonly or not is_data_block(prop.fixed_type)):
+                    self.unassigned[name] = pointers[name]
             elif prop.type == "COLLECTION":
                 if name not in NOT_ASKED:
                     self.collections[name] = path_of(rna, name)

@@ -11,7 +11,7 @@ import bpy
 from ..rna import ancestry, declaring_class
 from ..wire import plain
 from .assigning import put, refused_items, refused_value_items, same
-from .layouts import Layout
+from .layouts import Layout, asked_pointers
 from .locked import Locked
 from .making import by_operator
 from .own_names import OwnNames
@@ -90,6 +90,7 @@ class Observer:
         self.names = OwnNames()
         self.through = WrittenThrough()
         self._layouts = {}
+        self._pointers = {}
         self._varied = {}
 
     def layout(self, struct):
@@ -100,8 +101,15 @@ class Observer:
         """The layout of a class."""
         known = self._layouts.get(rna.identifier)
         if known is None:
-            known = self._layouts[rna.identifier] = Layout(rna)
+            known = self._layouts[rna.identifier] = Layout(rna, self.pointers_of(rna))
             self.fields.update((field.path, field) for field in known.fields)
+        return known
+
+    def pointers_of(self, rna):
+        """The pointers of a class that instances are asked for. They are all that many ask of a layout."""
+        known = self._pointers.get(rna.identifier)
+        if known is None:
+            known = self._pointers[rna.identifier] = asked_pointers(rna)
         return known
 
     def leave_out(self, cls, name):
@@ -111,7 +119,8 @@ class Observer:
 
     def belonging(self, struct):
         """The structs behind an instance's pointers, without other data-blocks."""
-        values = [getattr(struct, name, None) for name in self.layout(struct).pointers if name not in AROUND]
+        pointers = self.pointers_of(struct.bl_rna)
+        values = [getattr(struct, name, None) for name in pointers if name not in AROUND]
         return [
             value
             for value in values
