@@ -15,6 +15,7 @@ from . import operator_areas
 from .active_objects import Objects, can_run, collection_calls, empty_scene, modes
 from .instances.making import SEQUENCER_SCENE, attempts, choices, mesh_object, no_sequencer_scene, remove
 from .operator_defaults import Defaults
+from .operators import operator_names
 
 # More modifiers than these are any modifier.
 MOST_MODIFIERS = 6
@@ -57,8 +58,8 @@ def operators():
     """Path → operator."""
     return {
         f"bpy.ops.{module}.{name}": getattr(getattr(bpy.ops, module), name)
-        for module in dir(bpy.ops)
-        for name in dir(getattr(bpy.ops, module))
+        for module, names in operator_names().items()
+        for name in names
         if f"{module}.{name}" not in NOT_ASKED
     }
 

@@ -5,13 +5,25 @@ import ast
 import inspect
 import textwrap
 
+import _bpy
 import bpy
 
 from .instances.assigning import refused_items
 from .rna import parameter
 
+OPERATORS = "ops"  # the module of bpy
 REFUSED = "\x01"
 NOTHING_SAID = "(undocumented operator)"  # what Blender puts in a description's place
+
+
+def operator_names():
+    """Module → the names of its operators, both sorted: who asks module by module has Blender list all each time."""
+    found = {}
+    for identifier in _bpy.ops.dir():
+        module, _, name = identifier.partition("_OT_")
+        if name:
+            found.setdefault(module.lower(), []).append(name)
+    return {module: sorted(found[module]) for module in sorted(found)}
 
 
 def names_in_file():
@@ -48,12 +60,14 @@ def argument(operator, prop):
 def calls_in(source):
     """The paths of the operators that a class's source calls where it finds itself, in their order."""
     found = {}
+    if OPERATORS not in source:
+        return []
     for node in ast.walk(ast.parse(textwrap.dedent(source))):
         if isinstance(node, ast.Attribute) and node.attr == "temp_override":
             return []
         if isinstance(node, ast.Call):
             path = ast.unparse(node.func)
-            if path.startswith("bpy.ops.") and path.count(".") == 3:
+            if path.startswith(f"bpy.{OPERATORS}.") and path.count(".") == 3:
                 found[path] = None
     return list(found)
 
@@ -71,13 +85,13 @@ def write_calls(write, path, identifier):
 
 def write_all(write):
     """One record an operator, one a module of operators."""
-    for module_name in sorted(dir(bpy.ops)):
+    for module_name, names in operator_names().items():
         module = getattr(bpy.ops, module_name)
         owner = f"bpy.ops.{module_name}"
         write(
             "symbol", path=owner, kind="module", owner="bpy.ops", description=f"Operators of {module_name}."
         )
-        for name in sorted(dir(module)):
+        for name in names:
             operator = getattr(module, name)
             rna = operator.get_rna_type()
             write(
