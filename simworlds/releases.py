@@ -39,6 +39,7 @@ def _table() -> dict[str, Any]:
     return tomllib.loads(_TABLE.read_text(encoding="utf-8"))
 
 
+@cache
 def minor_of(version: str) -> str:
     """``"5.1.2"``, ``"5.1"`` or ``"v5.1"`` → ``"5.1"``. Raises UserError for what is not a Blender version."""
     match = _VERSION.fullmatch(version.strip())

@@ -164,6 +164,6 @@ def _keep(usage: ScriptUsage, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         remove_unfinished_files(path.parent)
         with staged_file(path) as part, gzip.open(part, "wt", encoding="utf-8", compresslevel=1) as file:
-            json.dump(rows, file, ensure_ascii=False)
+            file.write(json.dumps(rows, ensure_ascii=False))  # json.dump is the slower one
         for old in sorted(path.parent.glob("*.json.gz"), key=lambda one: one.stat().st_mtime)[:-_KEPT]:
             old.unlink(missing_ok=True)

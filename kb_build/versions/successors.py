@@ -116,6 +116,7 @@ class Successors:
                 found = place, _pattern(row.old), row
                 self._patterns.setdefault(row.old.partition("*")[0], []).append(found)
         self._starts = KnownPrefixes(self._patterns)
+        self._row_of: dict[str, Succession | None] = {}  # of what was asked for
         self._found: dict[str, list[Succession]] = {}
 
     def stated(self) -> Iterator[Succession]:
@@ -244,8 +245,11 @@ class Successors:
                     return
 
     def _row(self, path: str) -> Succession | None:
-        if row := self._rows.get(path):
-            return row
+        if path not in self._row_of:
+            self._row_of[path] = self._rows.get(path) or self._row_by_pattern(path)
+        return self._row_of[path]
+
+    def _row_by_pattern(self, path: str) -> Succession | None:
         patterns = (entry for start in self._starts.of(path) for entry in self._patterns[start])
         for _, pattern, row in sorted(patterns, key=itemgetter(0)):
             if match := pattern.fullmatch(path):

@@ -14,6 +14,7 @@ from contextlib import suppress
 import bpy
 
 from . import operator_wants
+from .active_objects import can_run
 from .apart import apart, can_work_apart
 from .instances.making import activate, all_strips, choices
 from .operator_defaults import Defaults
@@ -167,16 +168,6 @@ class Stage:
         )
 
 
-def polled(known):
-    """The operators of these that can run here and now."""
-    found = set()
-    for path, operator in known.items():
-        with suppress(*TRIED):
-            if operator.poll():
-                found.add(path)
-    return found
-
-
 def works(operator, member, thing):
     """Whether an operator does its work, and Blender goes on, with one member of the context and no area."""
     if operator is None or not can_work_apart():
@@ -202,18 +193,18 @@ def find_all(write, known, scene):
     defaults = Defaults(known)
     left = dict(known)
     for state in stage.states():
-        for path in polled(left):
+        for path in can_run(left):
             del left[path]
         if state in THINGS:
             for member, thing in things:
                 with bpy.context.temp_override(area=None, region=None, **{member: thing}):
-                    for path in polled(left):
+                    for path in can_run(left):
                         given.setdefault(path, (member, thing))
         for editor in EDITORS if state in MANY else EDITORS[:1]:
             if stage.show(editor):
                 with stage.within():
-                    running = polled(left)
-                    defaults.ask(sorted(running))
+                    running = can_run(left)
+                    defaults.ask(running)
                     for path in running:
                         areas[path].add(stage.area.type)
     given = {path: member for path, (member, thing) in given.items() if works(left.get(path), member, thing)}
