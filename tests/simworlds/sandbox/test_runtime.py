@@ -261,6 +261,13 @@ def test_secrets_and_python_settings_stay_outside(tmp_path: Path) -> None:
     assert inside["PATH"] == os.environ["PATH"]
 
 
+def test_a_script_has_the_variables_that_it_is_given(tmp_path: Path) -> None:
+    text = "import os; print(os.environ['GIVEN'], 'PATH' in os.environ)"
+    log = tmp_path / "run.log"
+    run_script(HERE, script(tmp_path, text), [], timeout=60, log=log, variables={"GIVEN": "value"})
+    assert log.read_text().split() == ["value", "True"]
+
+
 def test_a_failing_script_is_an_error_with_the_end_of_its_output(tmp_path: Path) -> None:
     log = tmp_path / "run.log"
     text = "print('first of many'); print('x\\n' * 5000); raise SystemExit('the last word')"
