@@ -12,7 +12,7 @@ from kb_serve.recognise.resolving.subscripts import NODES_MODIFIER, CustomProper
 from simworlds.releases import version_key
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from kb_serve.answer.known.advice import Advice
     from kb_serve.reader import BaseReader
@@ -34,42 +34,60 @@ class Practice:
         ``is_named``: the question has its name, and was not only found to be like it.
         """
         said = stems_of(question)
-        for advice in self._of_version:
-            is_about = is_named or not advice.about or not advice.about.isdisjoint(said)
-            is_asked = not advice.asked or not advice.asked.isdisjoint(said)
-            # What a question says first: that soon tells most of it.
-            if (is_about and is_asked and self._is_on(advice, identifier)) or (
-                advice.wherever and self._is_told_anyway(advice, said)
-            ):
-                yield advice.text
+        known = self._of_version
+        told = {
+            place
+            for place in self._on(identifier)
+            if _is_asked(known[place], said, is_named=is_named) and identifier != known[place].needs
+        }
+        if len(said) <= _MOST_SAID:
+            places = (place for word in said for place in self._by_word.get(word, ()))
+            told.update(place for place in places if _is_told_anyway(known[place], said))
+        yield from (known[place].text for place in sorted(told))
         if identifier == _TOGGLES_ATTRIBUTE and (text := self._custom.on_attributes()):
             yield text
         if identifier == NODES_MODIFIER or identifier in self._pages[NODES_MODIFIER]:
             yield self._custom.on_inputs()
 
-    def _is_on(self, advice: Advice, identifier: str) -> bool:
-        """Whether advice is on a symbol, or on what a page explains."""
-        if advice.needs and (identifier == advice.needs or not self._reader.entry(advice.needs)):
-            return False
-        return (
-            identifier in advice.symbols
-            or identifier.startswith(advice.beginning)
-            or (bool(advice.explained) and identifier in self._pages[advice.explained])
-            or (bool(advice.chapters_of) and _folder(identifier) in self._folders[advice.chapters_of])
-        )
-
-    def _is_told_anyway(self, advice: Advice, said: frozenset[str]) -> bool:
-        """Whether a question has a word of each group by which advice is told of any symbol."""
-        if len(said) > _MOST_SAID:
-            return False
-        is_asked = not any(group.isdisjoint(said) for group in advice.wherever)
-        is_asked = is_asked and advice.unless.isdisjoint(said)
-        return is_asked and (not advice.needs or self._reader.entry(advice.needs) is not None)
+    def _on(self, identifier: str) -> Iterator[int]:
+        """The places of what is known of a symbol, or of what a page explains."""
+        yield from self._by_id.get(identifier, ())
+        yield from self._by_folder.get(_folder(identifier), ())
+        yield from (place for begin, place in self._by_beginning if identifier.startswith(begin))
 
     @cached_property
     def _of_version(self) -> tuple[Advice, ...]:
+        """What is known of this Blender and of what the base has; the look-ups below give places in it."""
         version = version_key(self._reader.meta.get("minor", ""))
-        return tuple(advice for advice in (*ADVICE, *RECIPES) if advice.since <= version < advice.before)
+        return tuple(
+            advice
+            for advice in (*ADVICE, *RECIPES)
+            if advice.since <= version < advice.before
+            and (not advice.needs or self._reader.entry(advice.needs) is not None)
+        )
+
+    @cached_property
+    def _by_id(self) -> dict[str, list[int]]:
+        """By the symbols that it is on, and the pages that explain them."""
+        return _places(
+            (*advice.symbols, *self._pages.get(advice.explained, ())) for advice in self._of_version
+        )
+
+    @cached_property
+    def _by_folder(self) -> dict[str, list[int]]:
+        """By the folders of the pages that explain what the chapters are of."""
+        folders = {path: {*map(_folder, pages)} - {""} for path, pages in self._pages.items()}
+        return _places(folders.get(advice.chapters_of, ()) for advice in self._of_version)
+
+    @cached_property
+    def _by_beginning(self) -> list[tuple[str, int]]:
+        """With the beginnings of the symbols that it is on."""
+        return [(begin, place) for place, advice in enumerate(self._of_version) for begin in advice.beginning]
+
+    @cached_property
+    def _by_word(self) -> dict[str, list[int]]:
+        """By the words of the first group by which it is told of any symbol."""
+        return _places(next(iter(advice.wherever), ()) for advice in self._of_version)
 
     @cached_property
     def _pages(self) -> dict[str, frozenset[str]]:
@@ -80,10 +98,25 @@ class Practice:
             for path in (*paths, NODES_MODIFIER)
         }
 
-    @cached_property
-    def _folders(self) -> dict[str, frozenset[str]]:
-        """Symbol → the folders of those pages."""
-        return {path: frozenset(map(_folder, pages)) - {""} for path, pages in self._pages.items()}
+
+def _is_asked(advice: Advice, said: frozenset[str], *, is_named: bool) -> bool:
+    """Whether a question comes to what is known of the symbol that it has, or is like."""
+    is_about = is_named or not advice.about or not advice.about.isdisjoint(said)
+    return is_about and (not advice.asked or not advice.asked.isdisjoint(said))
+
+
+def _is_told_anyway(advice: Advice, said: frozenset[str]) -> bool:
+    """Whether a question has a word of each group by which advice is told of any symbol."""
+    return advice.unless.isdisjoint(said) and not any(group.isdisjoint(said) for group in advice.wherever)
+
+
+def _places(keys: Iterable[Iterable[str]]) -> dict[str, list[int]]:
+    """Key → the places of those that have it."""
+    found: dict[str, list[int]] = {}
+    for place, own in enumerate(keys):
+        for key in own:
+            found.setdefault(key, []).append(place)
+    return found
 
 
 def _folder(slug: str) -> str:
