@@ -29,7 +29,7 @@ Scores = NDArray[np.float32]
 K1 = 2.2
 _PAGES = 2.0  # what a page counts, as pages are not weighed: as much as a symbol that is often used
 _NUMBER_BYTES = 4
-_KEPT = 120  # stems; a query has a dozen at most
+_KEPT = 60  # stems; a query has a dozen at most
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,14 +57,14 @@ class StemPostings:
     tells, 0 if no unit has it.
     """
 
-    numbers: NDArray[np.uint32]
+    numbers: NDArray[np.intp]
     saturated: Scores
     units: int
     documents: int
     idf: float
 
 
-_NOWHERE = StemPostings(np.zeros(0, np.uint32), np.zeros(0, np.float32), 0, 0, 0.0)
+_NOWHERE = StemPostings(np.zeros(0, np.intp), np.zeros(0, np.float32), 0, 0, 0.0)
 
 
 class InvertedIndex:
@@ -179,27 +179,28 @@ class InvertedIndex:
             )
         except (ValueError, TypeError) as error:
             raise self._reader.damaged(error) from error
-        weight = weights.astype(np.float32)
         units, documents, end = self.ends
         starts = [0, *accumulate(lengths)]
-        sound = len(numbers) == len(weight) and _within(numbers, 0, end) and np.isfinite(weight).all()
+        sound = len(numbers) == len(weights) and _within(numbers, 0, end) and np.isfinite(weights).all()
         if not (sound and _ascend(numbers, starts)):
             raise self._reader.damaged(f"the postings of {', '.join(stem for stem, *_ in rows)}")
+        weight = weights.astype(np.float32)
         saturated = np.where(numbers < documents, weight * (K1 + 1) / (weight + K1), weight)
+        places = numbers.astype(np.intp)  # which numpy looks up faster
         found: dict[str, StemPostings] = {}
-        phrases = np.uint32(documents)  # where they begin
         # Parts of what is kept and forgotten together.
         for (stem, having, _), (first, last) in zip(rows, pairwise(starts), strict=True):
-            own = numbers[first:last]
+            own = places[first:last]
             found[stem] = StemPostings(
-                own, saturated[first:last], having, int(own.searchsorted(phrases)), idf(units, having)
+                own, saturated[first:last], having, int(own.searchsorted(documents)), idf(units, having)
             )
         return found
 
 
 def _ascend(numbers: NDArray[np.uint32], starts: Sequence[int]) -> bool:
     """Whether numbers ascend from each start to the next."""
-    return set(starts).issuperset((np.flatnonzero(numbers[1:] <= numbers[:-1]) + 1).tolist())
+    (falls,) = (numbers[1:] <= numbers[:-1]).nonzero()
+    return set(starts).issuperset((falls + 1).tolist())
 
 
 def _within(numbers: NDArray[Any], low: int, high: int) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -25,8 +25,7 @@ class Concept:
     idf: float
 
 
-@dataclass(frozen=True, slots=True)
-class Scored:
+class Scored(NamedTuple):
     """Of every document, by number: its score, and its coverage, the share of the query that it speaks of. What has
     none of the query's stems has 0.
     """
@@ -61,22 +60,21 @@ def said_phrases(index: InvertedIndex, concepts: Sequence[Concept], wanted: NDAr
     """The phrases that ask for one of the ``wanted`` documents: there are so many others that they are not scored."""
     weighed = [*_weighed(index, concepts)]
     numbers = np.concatenate([postings.numbers[postings.documents :] for postings, *_ in weighed])
-    numbers -= np.uint32(index.ends[1])
-    shares = np.concatenate(
-        [weight * postings.saturated[postings.documents :] for postings, weight, _ in weighed]
-    )
-    coverage = np.repeat(
-        [share for *_, share in weighed], [len(one.numbers) - one.documents for one, *_ in weighed]
-    )
-    kept = np.flatnonzero(wanted[index.asked[numbers]])
+    numbers -= index.ends[1]
+    (kept,) = wanted[index.asked[numbers]].nonzero()
     found = numbers[kept]
+    # Which concept has told of each.
+    ends = np.cumsum([len(postings.numbers) - postings.documents for postings, *_ in weighed])
+    concept = ends.searchsorted(kept, "right")
+    weights = np.array([weight for _, weight, _ in weighed])[concept]
+    saturated = np.concatenate([postings.saturated[postings.documents :] for postings, *_ in weighed])[kept]
     phrases = np.sort(found)
     places = phrases.searchsorted(found)  # the first of each phrase: the others of it stay 0
     said = SaidPhrases(
         index.asked[phrases], np.zeros(len(phrases), np.float32), np.zeros(len(phrases), np.float32)
     )
-    np.add.at(said.shares, places, shares[kept])
-    np.add.at(said.coverage, places, coverage[kept])
+    np.add.at(said.shares, places, weights * saturated)
+    np.add.at(said.coverage, places, np.array([share for *_, share in weighed])[concept])
     return said
 
 

@@ -7,7 +7,6 @@ name, and a class with the page that explains it.
 
 from __future__ import annotations
 
-from collections import Counter
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from kb_serve.rank.inverted_index import Scores
-    from kb_serve.rank.scoring import Scored
     from kb_serve.reader import BaseReader
 
 COVERAGE = True  # whether a document counts by the share of the query that it speaks of
@@ -74,9 +72,9 @@ class SearchHit(NamedTuple):
 class _Ranked:
     """Units, best first: their numbers, scores and topics."""
 
-    numbers: NDArray[np.intp]
-    scores: Scores
-    topics: NDArray[np.int32]
+    numbers: list[int]
+    scores: list[float]
+    topics: list[int]
 
 
 class Searcher:
@@ -155,8 +153,10 @@ class Searcher:
             return []
         numbers, evidence = found
         scores = scores_of(evidence)
-        order = np.argsort(-scores, kind="stable")
-        ranked = _Ranked(numbers[order], scores[order], self.index.levels[0].topics[numbers[order]])
+        order = best_first(scores, len(scores))
+        numbers = numbers[order]
+        topics = self.index.levels[0].topics[numbers]
+        ranked = _Ranked(numbers.tolist(), scores[order].tolist(), topics.tolist())
         best = _with_text_first(evidence.kinds[order].tolist())
         return [self._hit(place, ranked) for place in self._varied(best, ranked, limit)]
 
@@ -168,7 +168,7 @@ class Searcher:
             return
         numbers, evidence = found
         scores = scores_of(replace(evidence, called=None))
-        for place in np.argsort(-scores, kind="stable").tolist():
+        for place in best_first(scores, len(scores)).tolist():
             yield self.index.levels[0].refs[numbers[place]], float(scores[place])
 
     def _hit(self, place: int, ranked: _Ranked) -> SearchHit:
@@ -178,7 +178,7 @@ class Searcher:
         ref = units.refs[number]
         members: list[str] = []
         if topic >= 0 and topics.refs[topic] == ref and not self._reader.is_page(ref):
-            below = np.flatnonzero(ranked.topics == topic)
+            below = [other for other, its in enumerate(ranked.topics) if its == topic]
             near = [
                 units.refs[ranked.numbers[other]]
                 for other in below[: _MEMBERS + 1]
@@ -188,7 +188,7 @@ class Searcher:
         return SearchHit(
             ref,
             units.anchors[number],
-            float(ranked.scores[place]),
+            ranked.scores[place],
             tuple(members[:_MEMBERS]),
             int(units.chapters[number]),
         )
@@ -199,15 +199,15 @@ class Searcher:
         """The units that speak most of a text: their numbers, and what is known of them. None if there are none."""
         concepts = [*self.concepts(text), *self._around(about, text)]
         units, topics = self.index.levels
-        found = score_all(self.index, concepts)
-        numbers = np.flatnonzero(found.coverage[: units.count] > 0)
+        scores, coverage = score_all(self.index, concepts)
+        (numbers,) = (coverage[: units.count] > 0).nonzero()
         if not len(numbers):
             return None
-        around = np.zeros(topics.count + 1, np.float32)  # the last: for the units that have no topic, -1
-        around[:-1] = _told(found, slice(units.count, None))
-        own, topic = _told(found, numbers), units.topics[numbers]
-        texts = _float32(own + TOPIC_WEIGHT * np.where(topic >= 0, around[topic], ALONE * own))
-        best = _top(texts, _CANDIDATES)
+        told = scores * coverage if COVERAGE else scores
+        own, topic = told[numbers], units.topics[numbers]
+        around = np.where(topic >= 0, told[units.count + topic], ALONE * own)
+        texts = _float32(own + TOPIC_WEIGHT * around)
+        best = best_first(texts, _CANDIDATES)
         numbers, texts, topic = numbers[best], texts[best], topic[best]
         evidence = Evidence(
             frozenset(words(text)),
@@ -280,14 +280,13 @@ class Searcher:
         few different things have been named. So does the fourth of a chapter, as the query may mean another one.
         """
         units = self.index.levels[0]
-        numbers: list[int] = ranked.numbers.tolist()
         first: list[int] = []
         waiting: list[int] = []
         later: list[int] = []
         seen: set[str | int] = set()
-        chapters: Counter[int] = Counter()
+        chapters: dict[int, int] = {}  # how many of each are among the first
         for place in order:
-            number = numbers[place]
+            number = ranked.numbers[place]
             ref = units.refs[number]
             if ref in seen:
                 continue
@@ -295,11 +294,11 @@ class Searcher:
             explained, chapter = int(units.explained[number]), int(units.chapters[number])
             if name in seen:
                 later.append(place)
-            elif len(first) < _DIFFERENT and (explained in seen or chapters[chapter] == _OF_A_CHAPTER):
+            elif len(first) < _DIFFERENT and (explained in seen or chapters.get(chapter) == _OF_A_CHAPTER):
                 waiting.append(place)
             else:
                 first.append(place)
-                chapters[chapter] += 1
+                chapters[chapter] = chapters.get(chapter, 0) + 1
                 if len(first) == _DIFFERENT:
                     first += waiting
             seen.update((ref, name))
@@ -326,12 +325,6 @@ def _said_name(ref: str, said: Set[str], kinds: Set[str]) -> tuple[Set[str], flo
     return (owners | own, _AS_MEMBER) if owners <= said and not own <= owners else (_NO_NAME, 0.0)
 
 
-def _told(found: Scored, numbers: NDArray[np.intp] | slice) -> Scores:
-    """How much documents speak of the query."""
-    scores = found.scores[numbers]
-    return _float32(scores * found.coverage[numbers]) if COVERAGE else scores
-
-
 def _float32(values: NDArray[Any]) -> Scores:
     return values.astype(np.float32, copy=False)
 
@@ -349,8 +342,16 @@ def _with_text_first(kinds: Sequence[int]) -> Iterator[int]:
     yield from rest
 
 
-def _top(scores: Scores, count: int) -> NDArray[np.intp]:
-    """The places of the ``count`` highest scores, highest first, equal ones in their order."""
-    count = min(count, len(scores))
-    best = np.sort(np.argpartition(scores, len(scores) - count)[-count:])
-    return best[np.argsort(-scores[best], kind="stable")]
+def best_first(scores: Scores, count: int) -> NDArray[np.intp]:
+    """The places of the ``count`` highest scores, all above 0, highest first, equal ones in their order.
+
+    The bits of such numbers ascend as they do. Sorted as whole numbers, with their places behind them, they take a
+    third of the time.
+    """
+    keys = np.left_shift(~scores.view(np.uint32), 32, dtype=np.uint64)
+    keys |= np.arange(len(keys), dtype=np.uint64)
+    if count < len(keys):
+        keys.partition(count)
+        keys = keys[:count]
+    keys.sort()
+    return keys.astype(np.uint32).astype(np.intp)
