@@ -47,51 +47,50 @@ class AnswerBlock(NamedTuple):
 
 
 class AnswerPart(NamedTuple):
-    """A few lines of a block. ``glue`` is what stands between them and the part before."""
+    """A few lines of a block, of ``size`` bytes. ``glue`` is what stands between them and the part before."""
 
     text: str
     name: str
     glue: str
+    size: int
 
 
 def cut(blocks: Iterable[AnswerBlock]) -> list[AnswerPart]:
     """The parts of an answer, each of at most ``PART_TOKENS``; an empty answer is one empty part."""
     parts: list[AnswerPart] = []
-    for block in blocks:
-        size = len if block.text.isascii() else _bytes
-        if size(block.text) <= _PART_BYTES:
-            parts.append(AnswerPart(block.text, block.name, "\n\n"))
+    for text, name, _ in blocks:
+        size = len if text.isascii() else _bytes
+        if (whole := size(text)) <= _PART_BYTES:
+            parts.append(AnswerPart(text, name, "\n\n", whole))
             continue
         glue, used = "\n\n", 0
         held: list[str] = []
-        for before, piece in _pieces(block.text, size):
-            added = size(piece)
-            if held and used + len(before) + added <= _PART_BYTES:
-                held += (before, piece)
-                used += len(before) + added
-                continue
-            if held:
-                parts.append(AnswerPart("".join(held), block.name, glue))
-                glue = before
-            held, used = [piece], added
-        parts.append(AnswerPart("".join(held), block.name, glue))
-    return parts or [AnswerPart("", "", "")]
+        for line in text.split("\n"):
+            length = size(line)
+            is_long = length > _PART_BYTES
+            for before, piece, added in _pieces(line, size) if is_long else (("\n", line, length),):
+                if held and used + len(before) + added <= _PART_BYTES:
+                    held += (before, piece)
+                    used += len(before) + added
+                    continue
+                if held:
+                    parts.append(AnswerPart("".join(held), name, glue, used))
+                    glue = before
+                held, used = [piece], added
+        parts.append(AnswerPart("".join(held), name, glue, used))
+    return parts or [AnswerPart("", "", "", 0)]
 
 
-def _pieces(text: str, size: Callable[[str], int]) -> Iterator[tuple[str, str]]:
-    """(what stands before it, a line), or where a line is longer than a part, its words up to there."""
-    for line in text.split("\n"):
-        before, rest = "\n", line
-        while size(rest) > _PART_BYTES:
-            head = rest.encode(errors="replace")[:_PART_BYTES].decode(errors="ignore")
-            space = head.rfind(" ")
-            if space > len(head) // 2:
-                yield before, head[:space]
-                before, rest = " ", rest[space + 1 :]
-            else:
-                yield before, head
-                before, rest = "", rest[len(head) :]
-        yield before, rest
+def _pieces(line: str, size: Callable[[str], int]) -> Iterator[tuple[str, str, int]]:
+    """The words of a line up to where it is longer than a part: what stands before them, they, and their size."""
+    before, rest = "\n", line
+    while size(rest) > _PART_BYTES:
+        head = rest.encode(errors="replace")[:_PART_BYTES].decode(errors="ignore")
+        space = head.rfind(" ")
+        end, after = (space, " ") if space > len(head) // 2 else (len(head), "")
+        yield before, head[:end], size(head[:end])
+        before, rest = after, rest[end + len(after) :]
+    yield before, rest, size(rest)
 
 
 def shown(parts: Sequence[AnswerPart], first: int, budget: int) -> tuple[str, int]:
@@ -99,13 +98,13 @@ def shown(parts: Sequence[AnswerPart], first: int, budget: int) -> tuple[str, in
     tokens: one at least.
     """
     pieces = [parts[first].text]
-    used = _bytes(pieces[0])
+    left = budget * _BYTES_PER_TOKEN - parts[first].size
     number = first + 1
-    for part in parts[number:]:
-        used += len(part.glue) + _bytes(part.text)
-        if used > budget * _BYTES_PER_TOKEN:
+    for text, _, glue, size in parts[number:]:
+        left -= len(glue) + size
+        if left < 0:
             break
-        pieces += (part.glue, part.text)
+        pieces += (glue, text)
         number += 1
     return "".join(pieces).strip("\n"), number
 
