@@ -155,12 +155,14 @@ class BaseReader:
         self.close_with(self._connection.close)
         self._work_left = UNLIMITED
         # A symbol's or page's row, or None; the pages right below one, in the manual's order; the targets of a symbol's
-        # links to the manual; (form, id) of everything spelled like a key (see analysis.key), preferred forms first.
+        # links to the manual, and the URL of the first that is a page; (form, id) of everything spelled like a key (see
+        # analysis.key), preferred forms first.
         # An entry takes nearly a kilobyte, and a class has fifty members.
         self.entry = KeptRows(self._entries, None, 700)
         self.page_entry = KeptRows(self._page_entries, None, 500)
         self.page_children = KeptRows(self._page_children, (), 100)
         self.manual_links = KeptRows(self._manual_links, (), 500)
+        self.manual_url = KeptRows(self._manual_urls, "", 500)
         self.by_key = KeptRows(self._by_key, (), 100)
         # What scripts write for a page's labels: (section, line) → the names in Markdown; line -1 is the heading.
         self.label_names = KeptRows(self._label_names, {}, 100)
@@ -270,6 +272,12 @@ class BaseReader:
         sql = "SELECT source, target FROM links WHERE kind = 'manual' AND source"
         return _grouped(self.rows_of(sql, sources, "place"))
 
+    def _manual_urls(self, sources: Sequence[str]) -> dict[str, str]:
+        sql = """SELECT links.source, url || substr(target, instr(target || '#', '#')) FROM links
+            JOIN pages ON slug = substr(target, 1, instr(target || '#', '#') - 1)
+            WHERE kind = 'manual' AND links.source"""
+        return dict(self.rows_of(sql, sources, "place DESC"))
+
     def _label_names(self, slugs: Sequence[str]) -> dict[str, dict[tuple[int, int], str]]:
         rows = self.rows_of("SELECT slug, section, line, names FROM label_names WHERE slug", slugs)
         names: dict[str, dict[tuple[int, int], str]] = {}
@@ -296,6 +304,12 @@ class BaseReader:
         for child in self.subclasses(path):
             yield child
             yield from self.descendants(child.path)
+
+    def labels_below(self, path: str) -> dict[str, str]:
+        """The labels of a class and of every class below it."""
+        sql = """WITH RECURSIVE below(path) AS (VALUES (?) UNION SELECT symbols.path FROM symbols
+            JOIN below ON base = below.path AND base != '') SELECT path, label FROM symbols WHERE path IN below"""
+        return dict(self.rows(sql, path))
 
     def lineage(self, path: str) -> Iterator[SymbolEntry]:
         """A class and its bases up to bpy_struct."""

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.records import PAGE_SOURCES
-from kb_serve.answer.pages import load_manual_pages, manual_page
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,11 +32,11 @@ class Hit:
 
 def hits_of(rows: Sequence[RankedId], reader: BaseReader) -> tuple[Hit, ...]:
     """What was found, by its ids; all is read at once."""
-    pages = [row.id for row in rows if reader.is_page(row.id)]
+    pages = {row.id for row in rows if reader.is_page(row.id)}
     symbols = [row.id for row in rows if row.id not in pages]
     reader.page_entry.load(pages)
     reader.entry.load(symbols)
-    load_manual_pages(symbols, reader)
+    reader.manual_url.load(symbols)
     return tuple(_hit(row, reader) for row in rows)
 
 
@@ -50,4 +49,4 @@ def _hit(row: RankedId, reader: BaseReader) -> Hit:
     entry = reader.entry(row.id)
     if entry is None:
         return Hit(row.id, "unknown", row.id, score)
-    return Hit(row.id, entry.kind, entry.label or entry.name, score, manual_page(row.id, reader))
+    return Hit(row.id, entry.kind, entry.label or entry.name, score, reader.manual_url(row.id))

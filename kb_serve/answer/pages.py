@@ -10,7 +10,7 @@ from kb_build.symbols.lines import first_sentence
 from kb_serve.answer.budget import AnswerBlock
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from kb_build.symbols.records import Section
     from kb_serve.reader import BaseReader, PageEntry
@@ -71,24 +71,6 @@ def passage_block(path: str, reader: BaseReader) -> Iterator[AnswerBlock]:
     named = with_names(section.text, found[1], reader.label_names(page.slug))
     if text := passage_text(named, found[2]):
         yield AnswerBlock(f"**In the manual** ({where})\n{text}", "the manual's words")
-
-
-def manual_page(path: str, reader: BaseReader) -> str:
-    """The URL of a symbol's manual page, by Blender's own table; empty for none."""
-    for target in reader.manual_links(path):
-        slug, _, anchor = target.partition("#")
-        page = reader.page_entry(slug)
-        if page:
-            return page.url + (f"#{anchor}" if anchor else "")
-    return ""
-
-
-def load_manual_pages(paths: Iterable[str], reader: BaseReader) -> None:
-    """Reads what ``manual_page`` needs for some symbols, all at once."""
-    paths = list(paths)
-    reader.manual_links.load(paths)
-    targets = (target for path in paths for target in reader.manual_links(path))
-    reader.page_entry.load(target.partition("#")[0] for target in targets)
 
 
 def said_of(page: PageEntry, reader: BaseReader) -> str:

@@ -20,7 +20,6 @@ from kb_build.symbols.records import (
 )
 from kb_serve.answer.calls_before import calls_before
 from kb_serve.answer.makers_of_instances import told_makers
-from kb_serve.answer.pages import manual_page
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -65,7 +64,7 @@ def place_lines(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
     version, lacked = reader.arrival(symbol.path)
     if version:
         yield f"since Blender {version}" + (f" or a little before ({lacked} lacks it)" if lacked else "")
-    if page := manual_page(symbol.path, reader):
+    if page := reader.manual_url(symbol.path):
         yield f"manual: {page}"
 
 

@@ -120,8 +120,8 @@ class TopicPages:
             chapter = next(chapter for word, chapter in CHAPTERS.items() if word in place.lower())
             if slug := self._called(node, chapter):
                 return slug
-        if len(plain.split()) > _MAX_WORDS:  # then both are looked up, as they stand
-            self._reader.by_key.load(map(topic_key, (plain, plain.rpartition(" ")[0])))
+        if _OF_CODE.isdisjoint(plain):  # then both are looked up, as they stand
+            self._reader.by_key.load((*_keys(plain), *_keys(plain.rpartition(" ")[0])))
         return (
             self._called(plain)
             or self._called(made)
@@ -219,10 +219,10 @@ class TopicPages:
             return self._exactly(plain)
         if plain != plain.lower() and self._is_class(plain):
             return ""
-        keys = [topic_key(f"{plain} {kind}") for kind in ("", *SHORT_FOR)]
-        self._reader.by_key.load((*keys, key(plain)))
-        titled = [{slug for _, slug in self._reader.by_key(title)} for title in keys]
-        titled[0] |= {slug for _, slug in self._reader.by_key(key(plain)) if self._reader.page_children(slug)}
+        *titles, own = _keys(plain)
+        self._reader.by_key.load((*titles, own))
+        titled = [{slug for _, slug in self._reader.by_key(title)} for title in titles]
+        titled[0] |= {slug for _, slug in self._reader.by_key(own) if self._reader.page_children(slug)}
         if not chapter and len(titled[0]) == 1 and (doing := self._doing(plain, *titled[0])):
             return doing
         if titled[0] and all(slug.startswith(_BONES) for slug in titled[0]):
@@ -332,6 +332,15 @@ class TopicPages:
         """The number of pages and symbols below a page: people rarely mean the smaller chapter."""
         below = subtree(slug, self._reader)
         return len(below) + sum(len(self._reader.symbols_of_page(child)) for child in below)
+
+
+def _keys(plain: str) -> list[str]:
+    """The keys by which the page of a topic is found: by its title, that of each kind of what may be called so, and by
+    any spelling; of many words by their title alone.
+    """
+    if len(plain.split()) > _MAX_WORDS:
+        return [topic_key(plain)]
+    return [*(topic_key(f"{plain} {kind}") for kind in ("", *SHORT_FOR)), key(plain)]
 
 
 def subtree(slug: str, reader: BaseReader, depth: int = 3) -> dict[str, int]:

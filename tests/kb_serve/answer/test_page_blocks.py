@@ -8,7 +8,7 @@ import pytest
 
 from kb_build.symbols.records import Section
 from kb_serve.answer import pages
-from kb_serve.answer.pages import manual_page, outline, page_blocks, said_of, with_names
+from kb_serve.answer.pages import outline, page_blocks, said_of, with_names
 from kb_serve.knowledge_base import KnowledgeBase
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def test_the_section_asked_for_comes_first(reader: BaseReader, kb: KnowledgeBase
 
 def test_an_unknown_page_renders_nothing(reader: BaseReader) -> None:
     assert list(page_blocks("nowhere", reader)) == []
-    assert manual_page("bpy.types.Nothing", reader) == ""
+    assert reader.manual_url("bpy.types.Nothing") == ""
 
 
 def test_a_passage_of_an_engines_page_names_the_engine(base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
