@@ -205,7 +205,8 @@ class QueryRanker:
 
     def _at_its_section(self, row: RankedId, prose: str) -> RankedId:
         """A page that was found as a whole, with the section that is asked for."""
-        page = self._reader.page(row.id) if row.why == "found" and not row.anchor else None
+        is_whole = row.why == "found" and not row.anchor and self._reader.is_page(row.id)
+        page = self._reader.page(row.id) if is_whole else None
         if page is None or len(page.sections) == 1:
             return row
         return row._replace(anchor=asked_section(page, self.searcher.concepts(prose)))

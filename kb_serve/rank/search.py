@@ -198,7 +198,7 @@ class Searcher:
     ) -> tuple[NDArray[np.intp], Evidence] | None:
         """The units that speak most of a text: their numbers, and what is known of them. None if there are none."""
         concepts = [*self.concepts(text), *self._around(about, text)]
-        units, topics = self.index.levels
+        units = self.index.levels[0]
         scores, coverage = score_all(self.index, concepts)
         (numbers,) = (coverage[: units.count] > 0).nonzero()
         if not len(numbers):
@@ -231,26 +231,23 @@ class Searcher:
         said = frozenset(asked)
         kinds = said & _KINDS
         called: Scores | None = None
-        refs = self.index.levels[0].refs
-        labels = self._node_labels(numbers[:_NEAREST])
-        for place, number in enumerate(numbers[:_NEAREST].tolist()):
-            ref = refs[number]
-            name, counts = (labels[ref], _AS_NODE) if ref in labels else _said_name(ref, said, kinds)
+        units = self.index.levels[0]
+        nearest = numbers[:_NEAREST]
+        for place, (number, kind) in enumerate(
+            zip(nearest.tolist(), units.kinds[nearest].tolist(), strict=True)
+        ):
+            ref = units.refs[number]
+            label = self._node_labels.get(ref) if kind == _NODE else None
+            name, counts = _said_name(ref, said, kinds) if label is None else (stems_of(label), _AS_NODE)
             if len(name) >= _WORDS_OF_A_NAME and name <= said:
                 called = np.zeros(len(numbers), np.float32) if called is None else called
                 called[place] = counts * sum(asked[part] for part in name) / sum(asked.values())
         return called
 
-    def _node_labels(self, numbers: NDArray[np.intp]) -> dict[str, Set[str]]:
-        """The words of the labels of the classes of nodes that are among some units."""
-        units = self.index.levels[0]
-        of_nodes = numbers[(units.kinds[numbers] == _NODE) & ~units.members[numbers]]
-        paths = [units.refs[number] for number in of_nodes.tolist()]
-        self._reader.entry.load(paths)
-        entries = filter(None, map(self._reader.entry, paths))
-        return {
-            entry.path: stems_of(entry.label) for entry in entries if self._reader.descends(entry.path, NODE)
-        }
+    @cached_property
+    def _node_labels(self) -> dict[str, str]:
+        """The labels of the classes of nodes."""
+        return self._reader.labels_below(NODE)
 
     def _asked(
         self, concepts: Sequence[Concept], numbers: NDArray[np.intp], topic: NDArray[np.int32]

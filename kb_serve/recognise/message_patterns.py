@@ -113,6 +113,40 @@ NO_PATH = re.compile(
     r"\b(?:keyframe_(?:insert|delete)|driver_(?:add|remove))\(\):? property \"(?P<name>\w+)\" not found"
 )
 
+# A message that one of these patterns fits has one of these words.
+_SIGNS = (
+    "GPU functions",
+    "Manta::Error",
+    "Node type",
+    "Writing to ID",
+    "__init__",
+    "__new__",
+    "arg",  # argument, keyword arguments
+    "attribute",
+    "cannot create",
+    "cannot import name",
+    "could not",
+    "doesn't exist",
+    "does not support",
+    "error with",
+    "expected",
+    "has been removed",
+    "incompatible return value",
+    "is not defined",
+    "is read-only",
+    "keyword",
+    "module named",
+    "multiplication",
+    "no setter",
+    "not found",
+    "out of range",
+    "outdated internal",
+    "poll()",
+    "required parameter",
+    "sequences of dimension",
+    "unknown operator",
+)
+
 _OF_CLASS = re.compile(r"'(\w+)' object\b")
 
 # The wording of messages that looks like code, or like names of classes and members.
@@ -139,6 +173,11 @@ _WORDING = re.compile(
     + _OF_LOG,
     re.VERBOSE,
 )
+
+
+def may_be_message(query: str) -> bool:
+    """Whether a query has words of a message that one of these patterns fits."""
+    return any(sign in query for sign in _SIGNS)
 
 
 def first_matches(pattern: re.Pattern[str], query: str) -> Iterator[re.Match[str]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_serve.recognise.message_patterns import may_be_message
 from kb_serve.recognise.messages.absent import Absent
 from kb_serve.recognise.messages.argument_places import ArgumentPlaces
 from kb_serve.recognise.messages.assigned_properties import AssignedProperties
@@ -78,6 +79,9 @@ class Messages:
             recognise_multiplications,
             Registration(reader).recognise,
             GivenValues(reader, absent).recognise,
+        )
+        # Of messages in words of their own.
+        self._others: tuple[Callable[[str, Recognition], None], ...] = (
             RefusedCalls(reader).recognise,
             Manifests(reader).recognise,
             NamelessMessages(reader).recognise,
@@ -92,10 +96,11 @@ class Messages:
 
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds what a message is about: a class without an attribute, an operator, the owner of an enum."""
-        for recognise in self._recognisers:
+        recognisers = self._recognisers if may_be_message(query) else ()
+        for recognise in (*recognisers, *self._others):
             recognise(query, recognition)
 
     def explain(self, query: str, recognition: Recognition) -> None:
         """Adds notes that need the query's names: the right argument, a removed socket."""
-        for explain in self._explainers:
+        for explain in self._explainers if may_be_message(query) else ():
             explain(query, recognition)

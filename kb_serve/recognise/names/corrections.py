@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -210,7 +210,7 @@ class Corrector:
             root = self.root(chain.root)
             if root and root.similarity < 1.0:
                 corrections.append(root)
-                chain = replace(chain, root=root.meant)
+                chain = chain._replace(root=root.meant)
                 readings = self._resolver.resolve(chain)
         for _ in range(_ROUNDS):
             if not readings or readings[0].complete:
@@ -271,4 +271,4 @@ def _closest(
 def _with_step(chain: Chain, number: int, name: str) -> Chain:
     steps = list(chain.steps)
     steps[number] = ChainStep("key" if steps[number].kind == "key" else "attr", socket_name(name) or name)
-    return replace(chain, steps=tuple(steps))
+    return chain._replace(steps=tuple(steps))

@@ -48,6 +48,12 @@ def _strangeness(text: str, identifier: str) -> int:
     return 2 if identifier.removeprefix(TYPES).count(".") == text.removeprefix(TYPES).count(".") else 3
 
 
+def _class_of(text: str) -> str:
+    """The path of the class whose member a text may be spelled as; empty for none."""
+    cls = text.removeprefix(TYPES).rpartition(".")[0]
+    return TYPES + cls if cls and "." not in cls else ""
+
+
 def _called(text: str) -> str:
     """``f`` of ``f(a, b)``; the text itself if it is not a call, or continues after it."""
     start, depth = text.find("("), 0
@@ -72,18 +78,8 @@ class Spellings:
         text = query.strip().strip("`'\"").rstrip(".:;,?!")
         if is_quoted_value(query, self._reader):
             return  # ``'EMITTER'`` is not the page of emitters
-        if "[" in text or (
-            " " not in text and not self._reader.entry(PROPERTIES + text)
-        ):  # a path; only sockets' have spaces, in brackets
-            candidates = (text, f"bpy.{text}")
-            self._reader.entry.load(candidates)
-            for path in candidates:
-                if self._reader.entry(path):
-                    recognition.add(path, 1.0, "exact")
-                    return
-            if taken_as := self._reader.still_works(TYPES + text):
-                recognition.add_former_name(taken_as, 1.0)
-                return
+        if self._path(text, recognition):
+            return
         if slug := find_page(text, self._reader):
             recognition.add(slug, 1.0, "exact")
             return
@@ -106,13 +102,29 @@ class Spellings:
             for removed in self._removed.spelled(called):
                 recognition.add_removed(removed)
 
+    def _path(self, text: str, recognition: Recognition) -> bool:
+        """Adds the symbol that has a text as its path, or had it once; whether there is one."""
+        candidates = (text, f"bpy.{text}")
+        is_one_word = " " not in text
+        if is_one_word:  # what else it may be is looked for behind this
+            self._reader.entry.load((*candidates, PROPERTIES + text, TYPES + text, _class_of(text)))
+        if "[" not in text and (not is_one_word or self._reader.entry(PROPERTIES + text)):
+            return False  # only sockets' have spaces, in brackets
+        self._reader.entry.load(candidates)
+        if path := next(filter(self._reader.entry, candidates), ""):
+            recognition.add(path, 1.0, "exact")
+        elif taken_as := self._reader.still_works(TYPES + text):
+            recognition.add_former_name(taken_as, 1.0)
+            path = taken_as
+        return bool(path)
+
     def _inherited(self, text: str) -> str:
         """The member that a class inherits which is spelled as its own: ``GreasePencilLayer.hide``; "" for others."""
-        cls, _, name = text.removeprefix(TYPES).rpartition(".")
-        if not cls or "." in cls or not self._reader.entry(TYPES + cls):
+        cls, name = _class_of(text), text.rpartition(".")[2]
+        if not cls or not self._reader.entry(cls):
             return ""
-        member = self._reader.member_of(TYPES + cls, name)
-        return member.path if member and member.owner != TYPES + cls else ""
+        member = self._reader.member_of(cls, name)
+        return member.path if member and member.owner != cls else ""
 
     def _spelled(self, text: str, rows: Sequence[tuple[int, str]], recognition: Recognition) -> None:
         """Adds the symbols and pages with the query's key; the fuller the spelling, the surer."""

@@ -427,7 +427,8 @@ class OldCode:
 
         Nothing where something of that name takes it today.
         """
-        if not (match := _KEYWORD.fullmatch(text)):
+        match = _KEYWORD.fullmatch(text) if _has_quotes(text) else None
+        if match is None:
             return
         today = (owner for owner, item, _ in self._reader.enum_owners(key(match[3])) if item == match[3])
         if any(owner.endswith((f"({match[1]})", f".{match[1]}")) for owner in today):
@@ -441,10 +442,14 @@ class OldCode:
 
     def still_taken_in_strings(self, text: str) -> Iterator[str]:
         """The classes that one gets by former names which are quoted: ``nodes.new("ShaderNodeBsdfGlossy")``."""
+        if not _has_quotes(text):
+            return
         yield from filter(None, map(self._reader.still_works, _quoted_paths(text)))
 
     def in_strings(self, text: str) -> Iterator[RemovedSymbol]:
         """Removed classes, operators and properties whose names are quoted: ``nodes.new("ShaderNodeTexMusgrave")``."""
+        if not _has_quotes(text):
+            return
         quoted = filter(None, map(self._removed.of_path, _quoted_paths(text)))
         yield from (removed for removed in quoted if removed.targets or _is_given_as_text(removed.path))
         for pattern in _PROPERTY_NAMES:
@@ -468,6 +473,10 @@ def _is_given_as_text(path: str) -> bool:
     """Whether scripts give such a class or operator by its name in a text: not ``LocRotScale``, a keying set's."""
     name = last_name(path)
     return path.startswith(OPERATORS) or name.startswith(NODE_FAMILIES) or bool(interface_part(name))
+
+
+def _has_quotes(text: str) -> bool:
+    return "'" in text or '"' in text
 
 
 def _quoted_paths(text: str) -> Iterator[str]:

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_serve.recognise.resolving.call_texts import arguments, texts_in
@@ -34,4 +33,4 @@ def path_given(chain: Chain) -> Chain | None:
     found = find_chains(f"{chain.root}.{path}") if path else []
     if len(found) != 1 or found[0].source != f"{chain.root}.{path}":
         return None
-    return replace(found[0], steps=(*before, *found[0].steps), source=f"{chain.source} {path}")
+    return found[0]._replace(steps=(*before, *found[0].steps), source=f"{chain.source} {path}")

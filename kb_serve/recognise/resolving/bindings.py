@@ -6,7 +6,6 @@ Code stands in queries between prose, in tracebacks, or without its ends of line
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.symbols.flags import NODE_FAMILIES
@@ -55,7 +54,7 @@ def with_bindings(text: str, chains: Sequence[Chain]) -> list[Chain]:
         if is_whole and is_assigned:
             bound[found[-1].root] = _Binding(_as_made(own), place)
         elif is_whole and (name := _iterated(found)) and _SEQUENCE.fullmatch(gap):
-            element = replace(own, steps=(*own.steps, _ELEMENT))
+            element = own._replace(steps=(*own.steps, _ELEMENT))
             elements[name] = bound[name] = _Binding(element, place)
         elif not own.steps and _is_named_otherwise(found):
             bound[own.root] = _Binding(found[-2], place - 2)
@@ -64,7 +63,7 @@ def with_bindings(text: str, chains: Sequence[Chain]) -> list[Chain]:
     if elements:  # ``[v.co for v in …]``: used before it is bound
         found = [_from(chain, elements, leading) for chain in found]
     for place in leading:
-        found[place] = replace(found[place], leads_on=True)
+        found[place] = found[place]._replace(leads_on=True)
     return [*found, *sockets]
 
 
@@ -73,7 +72,7 @@ def _as_made(chain: Chain) -> Chain:
     first = chain.steps[0] if chain.steps else None
     if first is None or first.kind != "call" or not _OF_NODE.match(first.text):
         return chain
-    return replace(chain, root="nodes", steps=(ChainStep("attr", "new"), *chain.steps))
+    return chain._replace(root="nodes", steps=(ChainStep("attr", "new"), *chain.steps))
 
 
 def _without(found: Sequence[Chain], bound: dict[str, _Binding]) -> dict[str, _Binding]:
@@ -109,4 +108,4 @@ def _from(chain: Chain, bound: Mapping[str, _Binding], leading: set[int]) -> Cha
     if binding is None or len(binding.value.steps) + len(chain.steps) > MAX_STEPS:
         return chain
     leading.add(binding.place)
-    return replace(chain, root=binding.value.root, steps=(*binding.value.steps, *chain.steps))
+    return chain._replace(root=binding.value.root, steps=(*binding.value.steps, *chain.steps))

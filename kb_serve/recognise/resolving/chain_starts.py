@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import words
@@ -54,7 +53,7 @@ class ChainStarts:
     def of(self, chain: Chain) -> Iterator[tuple[ChainValue, int, float]]:
         """(value, steps used, fit) for everything that the chain's root can stand for."""
         if self._is_of_the_instance(chain):
-            own = replace(chain, root=chain.steps[0].text, steps=chain.steps[1:])
+            own = chain._replace(root=chain.steps[0].text, steps=chain.steps[1:])
             yield from ((value, 1, fit) for value, fit in self._of_variable(own, of_instance=True))
         elif (exact := self._rooted(chain)) and self._may_be_variable(chain, exact[0].symbol):
             named = self._named_like_a_module(chain.root, _first_name(chain))

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import builtins
 import re
-from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 _BUILTINS = frozenset(dir(builtins))
 MAX_QUERY = 4_000
@@ -13,6 +12,7 @@ MOST_CODE = 12  # expressions of a text that are read
 MAX_STEPS = 16  # the longest expression of a scene's script has ten
 _MAX_BUILTINS = 12
 _MAX_VALUES = 8
+_NO_WORD = re.compile(r"[.:>→(\[='\"]")  # what makes more of a name than a word
 _HUMP = re.compile(r"[a-z0-9][A-Z]")
 _IDENTIFIER = re.compile(r"(?<!\w)[^\W\d]\w*")  # not what follows the digit of ``3D_POLYLINE``
 # An arrow leads to a member too, but not to what a line came to: ``ob.data -> None``, ``→ IndexError``.
@@ -40,8 +40,7 @@ _QUOTED = re.compile(r"""^\s*[bru]?(["'])(.*)\1\s*$""", re.DOTALL)
 StepKind = Literal["attr", "key", "index", "call"]
 
 
-@dataclass(frozen=True, slots=True)
-class ChainStep:
+class ChainStep(NamedTuple):
     """``attr`` and ``key`` carry a name; ``index`` and ``call`` the text between their brackets."""
 
     kind: StepKind
@@ -51,8 +50,7 @@ class ChainStep:
 ChainKey = tuple[str, str, tuple[ChainStep, ...]]
 
 
-@dataclass(frozen=True, slots=True)
-class Chain:
+class Chain(NamedTuple):
     """A dotted expression: where it starts, and the steps from there. ``source`` is the text as typed.
 
     ``assigned`` tells whether it stands left of an assignment; ``values`` are the texts that it is set to or
@@ -178,6 +176,8 @@ def find_chains(text: str) -> list[Chain]:
     chains: list[Chain] = []
     position, code, builtins_called = 0, 0, 0
     text = text[:MAX_QUERY]
+    if _NO_WORD.search(text) is None and len(words := _IDENTIFIER.findall(text)) < MOST_CODE:
+        return [Chain(word, (), word) for word in words]
     while match := _IDENTIFIER.search(text, position):
         start, position = match.span()
         steps: list[ChainStep] = []
