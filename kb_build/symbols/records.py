@@ -7,13 +7,14 @@ these. It imports nothing of the project but leaves.
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast, get_args
 
 from kb_build.symbols.needs import OperatorNeeds
 from kb_build.symbols.paths import last_name, socket_name, socket_side
 from kb_build.symbols.taken import NEVER, Taken
+from simworlds.value_class import value_class
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
@@ -144,7 +145,7 @@ STARTUP = "start-up "
 FACTORY = "factory "
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class EnumItem:
     """One value of an enumeration.
 
@@ -162,7 +163,7 @@ class EnumItem:
         return self.where != NEVER
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class NewValue:
     """What newly made instances have: all of them, or those that ``made`` names, or those in the mode ``when``.
 
@@ -186,7 +187,7 @@ class NewValue:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class Parameter:
     """One argument (or returned value) of a function or an operator.
 
@@ -228,7 +229,7 @@ class Parameter:
         return bool(self.enum_items) and not any(item.is_taken for item in self.enum_items)
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class Deprecation:
     """What Blender itself, or its release notes, say of a property that is on its way out. Versions as ``"5.0"``."""
 
@@ -237,7 +238,7 @@ class Deprecation:
     removal: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class Refusal:
     """What Blender said to calls of a function whose arguments are those that the signature asks for.
 
@@ -268,7 +269,7 @@ def told_by(flags: Iterable[str], prefix: str) -> tuple[str, ...]:
     return tuple(flag.removeprefix(prefix) for flag in flags if flag.startswith(prefix))
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class Symbol:
     """One public identifier of Blender's Python API.
 
@@ -395,7 +396,7 @@ class Symbol:
         return told_by(self.flags, prefix)
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class Section:
     """A titled part of a page: the unit of retrieval.
 
@@ -412,7 +413,7 @@ class Section:
     marks: tuple[tuple[str, int], ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class Page:
     """One page of the manual, one guide, or one script template.
 
@@ -468,7 +469,7 @@ class SettingCondition(NamedTuple):
     otherwise: Otherwise
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class Link:
     """A relation between two ids (symbol paths or page slugs)."""
 

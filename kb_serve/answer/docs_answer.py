@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_serve.answer.budget import AnswerBlock, clip, cut, names_of, shown, tokens
@@ -11,6 +11,7 @@ from kb_serve.answer.next_call import next_call
 from kb_serve.errors import BadQuery
 from kb_serve.recognise.code.wrong_values import NO_VALUE
 from simworlds.counting import counted
+from simworlds.value_class import value_class
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -25,7 +26,7 @@ _NOTES_TOKENS = 500
 _NO_VALUE = re.compile(rf"'([^'\n]+)'`?{NO_VALUE}")
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class DocsAnswer:
     """What ``blender_docs`` returns. ``text`` is Markdown: what fits of the ``parts``, from ``part`` on, within the
     token budget; ``next_part`` is the one to go on with, 0 at the end.
@@ -40,7 +41,7 @@ class DocsAnswer:
     next_part: int = 0
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class Draft:
     """The whole answer."""
 

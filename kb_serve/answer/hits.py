@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.records import PAGE_SOURCES
+from simworlds.value_class import value_class
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class Hit:
     """A symbol or page that the answer is about. ``id`` is a symbol path or a page slug."""
 

@@ -6,7 +6,6 @@ All is numbered through: first the units, then the topics around them, then the 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate, pairwise
 from typing import TYPE_CHECKING, Any
@@ -18,6 +17,7 @@ from kb_build.index.analysis import idf
 from kb_build.schema import DOCUMENT_KINDS, POSTING_BYTES, TOPICS, UNITS
 from kb_serve.kept_rows import KeptRows
 from kb_serve.rank.areas import NO_AREA, area_of
+from simworlds.value_class import value_class
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,7 +32,7 @@ _NUMBER_BYTES = 4
 _KEPT = 60  # stems; a query has a dozen at most
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class Level:
     """The documents of one level, by number; ``explained``: a number for the page that explains them, or -1, ``kinds``:
     places in DOCUMENT_KINDS.
@@ -48,7 +48,7 @@ class Level:
     members: NDArray[np.bool_]
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class StemPostings:
     """The documents and phrases that have a stem, and for each how much it says of it: of documents, BM25's saturated
     frequency; of phrases, the share that a unit of idf is of all that the phrase tells.
@@ -181,10 +181,10 @@ class InvertedIndex:
             raise self._reader.damaged(error) from error
         units, documents, end = self.ends
         starts = [0, *accumulate(lengths)]
-        sound = len(numbers) == len(weights) and _within(numbers, 0, end) and np.isfinite(weights).all()
+        weight = weights.astype(np.float32)  # numpy works with float16 slowly
+        sound = len(numbers) == len(weight) and _within(numbers, 0, end) and np.isfinite(weight).all()
         if not (sound and _ascend(numbers, starts)):
             raise self._reader.damaged(f"the postings of {', '.join(stem for stem, *_ in rows)}")
-        weight = weights.astype(np.float32)
         saturated = np.where(numbers < documents, weight * (K1 + 1) / (weight + K1), weight)
         places = numbers.astype(np.intp)  # which numpy looks up faster
         found: dict[str, StemPostings] = {}

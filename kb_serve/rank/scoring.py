@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+
+from simworlds.value_class import value_class
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from kb_serve.rank.inverted_index import InvertedIndex, Scores, StemPostings
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class Concept:
     """One word of the query: its stem in the corpus ("" if it has none), the stem's weight, and its idf."""
 
@@ -34,7 +35,7 @@ class Scored(NamedTuple):
     coverage: Scores
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class SaidPhrases:
     """Phrases of which a query has a stem, in their order: the document that each asks for, the share of it, by rarity,
     that the query speaks of, and the share of the query that it has.

@@ -7,7 +7,7 @@ name, and a class with the page that explains it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -21,6 +21,7 @@ from kb_build.symbols.api_names import NODE, OPERATORS
 from kb_serve.rank.inverted_index import InvertedIndex
 from kb_serve.rank.scoring import Concept, said_phrases, score_all
 from kb_serve.rank.signals import Evidence, scores_of
+from simworlds.value_class import value_class
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence, Set
@@ -68,7 +69,7 @@ class SearchHit(NamedTuple):
     chapter: int = -1
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class _Ranked:
     """Units, best first: their numbers, scores and topics."""
 

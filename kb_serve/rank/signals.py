@@ -6,7 +6,6 @@ signals, each times its weight (:mod:`kb_serve.rank.weights`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +14,7 @@ from kb_build.schema import DOCUMENT_KINDS
 from kb_serve.rank.areas import NO_AREA, unasked
 from kb_serve.rank.asked_words import CODE_WORDS, NODE_WORDS, REMOVAL_WORDS
 from kb_serve.rank.weights import WEIGHTS
+from simworlds.value_class import value_class
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -30,7 +30,7 @@ _FEEDBACK = 100
 _FEEDBACK_POWER = 3  # the weaker half of the feedback units hardly votes
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class Evidence:
     """What is known of the units that speak of a query, as arrays in one order.
 

@@ -199,7 +199,8 @@ def classes_of_things(query: str) -> frozenset[str]:
 @lru_cache(maxsize=8)  # the same
 def without_wording(query: str) -> str:
     """A query without the wording of messages that looks like code or names."""
-    return _WORDING.sub(" ", _TRACEBACK.sub(" ", query))
+    text = _TRACEBACK.sub(" ", query)
+    return _WORDING.sub(" ", text) if is_message(query) else text
 
 
 def without_callers_names(query: str) -> str:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from kb_serve.recognise.resolving.chains import ChainKey
+from simworlds.value_class import value_class
 
 if TYPE_CHECKING:
     from kb_serve.recognise.names.corrections import Correction
@@ -47,7 +48,7 @@ Why = Literal[
 WHOLE_LABEL = 0.82  # how sure something is that is called as the whole query
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class RecognisedName:
     """A symbol or page that the query names. ``sure`` is 1 for an exact spelling and less for a likely reading."""
 
@@ -56,7 +57,7 @@ class RecognisedName:
     why: Why
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class MissingName:
     """A name that does not exist on the class (or in the module) ``owner``; ``owner`` may be empty.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -11,6 +10,7 @@ from kb_build.symbols.api_names import COLLECTION, TYPES
 from kb_build.symbols.math_classes import math_class
 from kb_build.symbols.python_values import is_new_list
 from kb_serve.recognise.resolving.untyped_properties import SEQUENCES, VALUES
+from simworlds.value_class import value_class
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
@@ -22,7 +22,7 @@ _VALUELESS = frozenset({"bundle", "closure", "custom", "geometry", "matrix", "sh
 _CLASS_NAME = re.compile(r"\b(?:\w+\.)*[A-Z]\w+")
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class ChainValue:
     """What a chain stands for up to a step: an instance of ``cls``, a collection of it, a module or a function.
 

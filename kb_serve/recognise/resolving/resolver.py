@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from itertools import islice
 from typing import TYPE_CHECKING
@@ -21,6 +21,7 @@ from kb_serve.recognise.resolving.chains import ChainStep
 from kb_serve.recognise.resolving.owners import Owners
 from kb_serve.recognise.resolving.subscripts import PROPERTIES_OF_OPERATORS, CustomProperties
 from kb_serve.recognise.resolving.variables import usual_classes
+from simworlds.value_class import value_class
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -49,7 +50,7 @@ _MAX_BRANCHES = 60
 _OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
 
 
-@dataclass(frozen=True, slots=True)
+@value_class
 class ResolvedChain:
     """A chain as far as it could be resolved.
 
