@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast, get_args
 from kb_build.symbols.needs import OperatorNeeds
 from kb_build.symbols.paths import last_name, socket_name, socket_side
 from kb_build.symbols.taken import NEVER, Taken
-from simworlds.value_class import value_class
+from simworlds.schemas.value_class import value_class
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

@@ -11,7 +11,7 @@ from kb_serve.answer.next_call import next_call
 from kb_serve.errors import BadQuery
 from kb_serve.recognise.code.wrong_values import NO_VALUE
 from simworlds.counting import counted
-from simworlds.value_class import value_class
+from simworlds.schemas.value_class import value_class
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

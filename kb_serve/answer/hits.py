@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.records import PAGE_SOURCES
-from simworlds.value_class import value_class
+from simworlds.schemas.value_class import value_class
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

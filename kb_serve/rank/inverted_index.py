@@ -17,7 +17,7 @@ from kb_build.index.analysis import idf
 from kb_build.schema import DOCUMENT_KINDS, POSTING_BYTES, TOPICS, UNITS
 from kb_serve.kept_rows import KeptRows
 from kb_serve.rank.areas import NO_AREA, area_of
-from simworlds.value_class import value_class
+from simworlds.schemas.value_class import value_class
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

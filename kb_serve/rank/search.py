@@ -21,7 +21,7 @@ from kb_build.symbols.api_names import NODE, OPERATORS
 from kb_serve.rank.inverted_index import InvertedIndex
 from kb_serve.rank.scoring import Concept, said_phrases, score_all
 from kb_serve.rank.signals import Evidence, scores_of
-from simworlds.value_class import value_class
+from simworlds.schemas.value_class import value_class
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence, Set
@@ -74,8 +74,8 @@ class _Ranked:
     """Units, best first: their numbers, scores and topics."""
 
     numbers: list[int]
-    scores: list[float]
-    topics: list[int]
+    scores: Scores
+    topics: NDArray[np.int32]
 
 
 class Searcher:
@@ -157,7 +157,7 @@ class Searcher:
         order = best_first(scores, len(scores))
         numbers = numbers[order]
         topics = self.index.levels[0].topics[numbers]
-        ranked = _Ranked(numbers.tolist(), scores[order].tolist(), topics.tolist())
+        ranked = _Ranked(numbers.tolist(), scores[order], topics)
         best = _with_text_first(evidence.kinds[order].tolist())
         return [self._hit(place, ranked) for place in self._varied(best, ranked, limit)]
 
@@ -179,17 +179,17 @@ class Searcher:
         ref = units.refs[number]
         members: list[str] = []
         if topic >= 0 and topics.refs[topic] == ref and not self._reader.is_page(ref):
-            below = [other for other, its in enumerate(ranked.topics) if its == topic]
+            below = (ranked.topics == topic).nonzero()[0][: _MEMBERS + 1].tolist()
             near = [
                 units.refs[ranked.numbers[other]]
-                for other in below[: _MEMBERS + 1]
+                for other in below
                 if ranked.scores[other] >= _NEAR * ranked.scores[below[0]]
             ]
             members = [other.removeprefix(f"{ref}.") for other in near if other.startswith(f"{ref}.")]
         return SearchHit(
             ref,
             units.anchors[number],
-            ranked.scores[place],
+            float(ranked.scores[place]),
             tuple(members[:_MEMBERS]),
             int(units.chapters[number]),
         )

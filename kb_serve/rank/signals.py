@@ -14,7 +14,7 @@ from kb_build.schema import DOCUMENT_KINDS
 from kb_serve.rank.areas import NO_AREA, unasked
 from kb_serve.rank.asked_words import CODE_WORDS, NODE_WORDS, REMOVAL_WORDS
 from kb_serve.rank.weights import WEIGHTS
-from simworlds.value_class import value_class
+from simworlds.schemas.value_class import value_class
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -10,7 +10,7 @@ from kb_build.symbols.api_names import COLLECTION, TYPES
 from kb_build.symbols.math_classes import math_class
 from kb_build.symbols.python_values import is_new_list
 from kb_serve.recognise.resolving.untyped_properties import SEQUENCES, VALUES
-from simworlds.value_class import value_class
+from simworlds.schemas.value_class import value_class
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry

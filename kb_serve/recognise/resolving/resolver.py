@@ -21,7 +21,7 @@ from kb_serve.recognise.resolving.chains import ChainStep
 from kb_serve.recognise.resolving.owners import Owners
 from kb_serve.recognise.resolving.subscripts import PROPERTIES_OF_OPERATORS, CustomProperties
 from kb_serve.recognise.resolving.variables import usual_classes
-from simworlds.value_class import value_class
+from simworlds.schemas.value_class import value_class
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
