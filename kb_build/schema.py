@@ -16,7 +16,7 @@ from urllib.parse import quote
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCHEMA_VERSION = 17
+SCHEMA_VERSION = 18
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's field for the application a file belongs to
 
 # How a key came about, in the order in which an answer prefers them.
@@ -49,7 +49,7 @@ DDL = """
 CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 
 -- One row an identifier; ``marks`` are of Mark, ``line`` describes it in one line, ``record`` is the whole Symbol,
--- packed (see pack).
+-- packed (see pack), of which ``reached`` and ``lacks`` stand here as well.
 CREATE TABLE symbols (
     id INTEGER PRIMARY KEY,
     path TEXT NOT NULL UNIQUE,
@@ -64,6 +64,8 @@ CREATE TABLE symbols (
     label TEXT NOT NULL,
     marks INTEGER NOT NULL,
     line TEXT NOT NULL,
+    reached TEXT NOT NULL,
+    lacks TEXT NOT NULL,
     record BLOB NOT NULL
 );
 
@@ -102,9 +104,11 @@ CREATE TABLE links (
     PRIMARY KEY (source, kind, place)
 ) WITHOUT ROWID;
 
--- The place in the manual that is about a symbol: a section's number and a line of its text, -1 for the heading.
+-- The place in the manual that is about a symbol: a section's number and a line of its text, -1 for the heading; the
+-- headings above it, and what it says, with the names that stand with its labels.
 CREATE TABLE passages (
-    path TEXT PRIMARY KEY, slug TEXT NOT NULL, section INTEGER NOT NULL, line INTEGER NOT NULL
+    path TEXT PRIMARY KEY, slug TEXT NOT NULL, section INTEGER NOT NULL, line INTEGER NOT NULL,
+    headings TEXT NOT NULL, text TEXT NOT NULL
 ) WITHOUT ROWID;
 
 -- What a script writes for a label in the manual, or for a choice below it, in Markdown: for a term in a line of a

@@ -18,6 +18,7 @@ from kb_build.index.documents import Document, kind_of, make_units, topic_docume
 from kb_build.index.everyday_words import lend, load_everyday_words, unknown_of
 from kb_build.index.label_names import find_label_names
 from kb_build.index.operator_labels import find_labelled_operators, passages_of
+from kb_build.index.passage_texts import passage_rows
 from kb_build.index.passages import find_passages
 from kb_build.index.postings import (
     TOPIC_B,
@@ -88,7 +89,7 @@ def _insert(
 
 
 def _write_symbols(connection: sqlite3.Connection, tables: SymbolTables) -> None:
-    _insert(connection, "symbols", tables.symbols, 14)
+    _insert(connection, "symbols", tables.symbols, 16)
     _insert(connection, "names", tables.names, 3)
     _insert(connection, "enum_items", tables.enum_items, 4)
     _insert(connection, "operator_arguments", tables.operator_arguments, 2)
@@ -273,10 +274,10 @@ def _write(part: Path, contents: Contents) -> None:
             write_index(connection, units, expansions)
             _write_removed_symbols(connection, removed_symbols())
             _insert(connection, "still_works", contents.still_works, 2)
-            _insert(connection, "passages", ((path, *passage) for path, passage in passages.items()), 4)
             names = find_label_names(symbols, pages, passages, labelled)
-            values = find_value_names(symbols, pages, passages)
-            _insert(connection, "label_names", (*names, *values), 4)
+            labels = (*names, *find_value_names(symbols, pages, passages))
+            _insert(connection, "label_names", labels, 4)
+            _insert(connection, "passages", passage_rows(passages, pages, labels), 6)
             _insert(connection, "refusals", _refusals(contents.symbols), 2)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             links = enumerate(contents.links)
@@ -291,6 +292,8 @@ def _write(part: Path, contents: Contents) -> None:
             weights = symbol_weights(contents.symbols, passages, asked, tables.uses)
             _insert(connection, "weights", weights.items(), 2)
             _insert(connection, "meta", contents.meta.items(), 2)
-        connection.executescript(f"{INDEXES} ANALYZE;")
+        connection.executescript(
+            f"{INDEXES} ANALYZE; VACUUM;"
+        )  # pages that were filled in no order are half empty
     finally:
         database.close()

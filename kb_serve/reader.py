@@ -40,7 +40,7 @@ UNLIMITED = float("inf")
 class SymbolEntry(NamedTuple):
     """The part of a symbol that resolving needs; the whole record is read only for answers.
 
-    ``line`` describes it in the list of its owner's members.
+    ``line`` describes it in the list of its owner's members. ``reached`` and ``lacks`` are a class's, as in its record.
     """
 
     path: str
@@ -55,6 +55,8 @@ class SymbolEntry(NamedTuple):
     label: str
     marks: int
     line: str
+    reached: str
+    lacks: str
 
     @property
     def head(self) -> str:
@@ -131,7 +133,7 @@ class Use:
     code: str
 
 
-_ENTRY = "path, kind, owner, name, type, target, collection, base, grp, label, marks, line"
+_ENTRY = "path, kind, owner, name, type, target, collection, base, grp, label, marks, line, reached, lacks"
 _PAGE = "slug, source, version, title, parent, url, summary, summary_method"
 
 
@@ -518,6 +520,13 @@ class BaseReader:
         """(slug, number of the section, line of its text) of the place in the manual that is about a symbol."""
         rows = self.rows("SELECT slug, section, line FROM passages WHERE path = ?", path)
         return rows[0] if rows else None
+
+    def passage_text(self, path: str) -> tuple[str, str, str]:
+        """(slug, headings, text) of that place; all empty where there is none."""
+        rows: list[tuple[str, str, str]] = self.rows(
+            "SELECT slug, headings, text FROM passages WHERE path = ?", path
+        )
+        return rows[0] if rows else ("", "", "")
 
     def weights(self, paths: Collection[str]) -> dict[str, float]:
         """How much symbols count among their like; those that count nothing are left out."""

@@ -8,10 +8,11 @@ from itertools import dropwhile, takewhile
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
 # Quotes, tables, lists, code, formulas, headings, definitions and what is nested in them, captions.
 _NOT_PROSE = re.compile(r"$|\s|[>|$#]|[-*] |```|\*\*[^\n]*\*\*:?\s*(?:\n|$)|Figure: ")
+_BULLET = re.compile(r"\s*- \*\*.+?\*\*\s*")
 _EXAMPLES = re.compile(r"(?:For )?examples?\b", re.IGNORECASE)
 
 
@@ -27,6 +28,24 @@ def term_of(line: str) -> str:
     term = line.strip()
     is_one = term.startswith("**") and term.rstrip(":").endswith("**")
     return term.strip("*: ") if is_one else ""
+
+
+def with_names(text: str, section: int, names: Mapping[tuple[int, int], str]) -> str:
+    """A section's text, the names that scripts have for its labels beside them, by section and line."""
+    if not names:
+        return text
+    return "\n".join(
+        _named(line, name) if (name := names.get((section, number))) else line
+        for number, line in enumerate(text.split("\n"))
+    )
+
+
+def _named(line: str, names: str) -> str:
+    """A line of a section with names: beside the term of a list, else at its end."""
+    bullet = _BULLET.match(line)
+    if bullet is None or bullet.end() == len(line):
+        return f"{line} · {names}"
+    return f"{bullet[0].rstrip()} {names} · {line[bullet.end() :]}"
 
 
 def passage_text(text: str, line: int) -> str:

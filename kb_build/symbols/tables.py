@@ -57,20 +57,22 @@ def symbol_tables(
     titles = {name for name, form, _ in names if form == FORM_TOPIC}
     names = sorted(names.union(action_names(pages, titles)))
     items = sorted((row for symbol in symbols for row in enum_rows(symbol)), key=itemgetter(0, 1, 2))
+    # Only classes are looked at again, once it is known how they are reached.
     records = [pack(to_json(symbol)) if symbol.kind != "class" else b"" for symbol in symbols]
     usage = used()
     calls = creation_calls(symbols, usage.reached, usage.names)
     on = _switches(usage.conditions)
     ways = EmptyWays(symbols, usage.reached)
+    placed = [_with_way(symbol, usage.reached, ways) for symbol in symbols]
     return SymbolTables(
         symbols=[
             (
                 number, symbol.path, symbol.kind, symbol.owner, symbol.name, symbol.type, symbol.target,
                 symbol.collection, symbol.base, symbol.group, symbol.label, int(marks_of(symbol)),
                 member_line(symbol, on.get(symbol.path, "")),
-                record or pack(to_json(_with_way(symbol, usage.reached, ways))),
+                symbol.reached, symbol.lacks, record or pack(to_json(symbol)),
             )
-            for number, (symbol, record) in enumerate(zip(symbols, records, strict=True))
+            for number, (symbol, record) in enumerate(zip(placed, records, strict=True))
         ],
         names=names,
         enum_items=items,

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
-from kb_build.pages.definitions import passage_text
+from kb_build.pages.definitions import with_names
 from kb_build.symbols.lines import first_sentence
 from kb_serve.answer.budget import AnswerBlock
 
@@ -20,7 +19,6 @@ _OUTLINE = 16  # sections that a heading lists
 # What the manual says of a setting may be true of one engine only.
 ENGINES = {"render/eevee/": "EEVEE", "render/cycles/": "Cycles", "render/workbench/": "Workbench"}
 _BY_MODEL = "AI summary: "  # what a language model wrote is not Blender's own word
-_BULLET = re.compile(r"\s*- \*\*.+?\*\*\s*")
 
 
 def page_blocks(slug: str, reader: BaseReader, anchor: str = "") -> Iterator[AnswerBlock]:
@@ -61,16 +59,10 @@ def _page_line(page: PageEntry, reader: BaseReader) -> str:
 
 def passage_block(path: str, reader: BaseReader) -> Iterator[AnswerBlock]:
     """What the manual says about a symbol."""
-    found = reader.passage(path)
-    page = reader.page(found[0]) if found else None
-    if found is None or page is None:
-        return
-    section = page.sections[found[1]]
-    engine = next((f"{name} › " for start, name in ENGINES.items() if page.slug.startswith(start)), "")
-    where = engine + (page.title if found[1] == 0 else f"{page.title} › {section.title}")
-    named = with_names(section.text, found[1], reader.label_names(page.slug))
-    if text := passage_text(named, found[2]):
-        yield AnswerBlock(f"**In the manual** ({where})\n{text}", "the manual's words")
+    slug, headings, text = reader.passage_text(path)
+    if text:
+        engine = next((f"{name} › " for start, name in ENGINES.items() if slug.startswith(start)), "")
+        yield AnswerBlock(f"**In the manual** ({engine}{headings})\n{text}", "the manual's words")
 
 
 def said_of(page: PageEntry, reader: BaseReader) -> str:
@@ -89,28 +81,10 @@ def own_summary(page: PageEntry) -> str:
     return page.summary if page.summary_method == "extractive" else f"{_BY_MODEL}{page.summary}"
 
 
-def with_names(text: str, section: int, names: Mapping[tuple[int, int], str]) -> str:
-    """A section's text, the names that scripts have for its labels beside them."""
-    if not names:
-        return text
-    return "\n".join(
-        _named(line, name) if (name := names.get((section, number))) else line
-        for number, line in enumerate(text.split("\n"))
-    )
-
-
 def _beside(names: Mapping[tuple[int, int], str], section: int, line: int) -> str:
     """What is added to a label: the names that scripts have for it."""
     name = names.get((section, line))
     return f" · {name}" if name else ""
-
-
-def _named(line: str, names: str) -> str:
-    """A line of a section with names: beside the term of a list, else at its end."""
-    bullet = _BULLET.match(line)
-    if bullet is None or bullet.end() == len(line):
-        return f"{line} · {names}"
-    return f"{bullet[0].rstrip()} {names} · {line[bullet.end() :]}"
 
 
 def outline(sections: Sequence[Section]) -> str:

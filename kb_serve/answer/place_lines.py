@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.symbols.records import Symbol
-    from kb_serve.reader import BaseReader
+    from kb_serve.reader import BaseReader, SymbolEntry
 
 _OPTIONAL = re.compile(r"(, )?\*, .*\)")
 _ADDING = ("new", "add", "link")  # the functions of collections that do so, the likeliest first
@@ -59,7 +59,7 @@ def place_lines(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
     elif (node := _owning_class(symbol, reader)) and _is_taken_nowhere(node, symbol, reader):
         alike = (reader.symbol(path) for path in alike_nodes(node.name))
         taken = ", ".join(f"`{other.name}`" for other in alike if other and other.trees)
-        it = "it" if node is symbol else f"a `{node.name}`"
+        it = "it" if node.path == symbol.path else f"a `{node.name}`"
         yield f"no node tree takes {it}: `nodes.new` refuses it" + (f"; it takes {taken}" if taken else "")
     version, lacked = reader.arrival(symbol.path)
     if version:
@@ -84,8 +84,8 @@ def reached_as(symbol: Symbol, reader: BaseReader) -> str:
     return f"{reached}{last}" + ("(…)" if symbol.kind == "function" else "")
 
 
-def _owning_class(symbol: Symbol, reader: BaseReader) -> Symbol | None:
-    return symbol if symbol.kind == "class" else reader.symbol(symbol.owner)
+def _owning_class(symbol: Symbol, reader: BaseReader) -> SymbolEntry | None:
+    return reader.entry(symbol.path if symbol.kind == "class" else symbol.owner)
 
 
 def _key_of(cls: str, reader: BaseReader) -> str:
@@ -105,28 +105,30 @@ def _is_node(path: str, reader: BaseReader) -> bool:
     return path != NODE and reader.descends(path, NODE)
 
 
-def _is_taken_nowhere(node: Symbol, symbol: Symbol, reader: BaseReader) -> bool:
+def _is_taken_nowhere(node: SymbolEntry, symbol: Symbol, reader: BaseReader) -> bool:
     """Whether a symbol is a class of nodes that no tree takes, or only belongs to such a one: not to a base class."""
-    if node.kind != "class" or node.trees or not _is_node(node.path, reader):
+    if node.kind != "class" or not _is_node(node.path, reader):
         return False
-    return node is symbol or not reader.subclasses(node.path)
+    record = reader.symbol(node.path)
+    is_taken = record is None or bool(record.trees)
+    return not is_taken and (node.path == symbol.path or not reader.subclasses(node.path))
 
 
-def _empty_before(cls: Symbol, reader: BaseReader) -> str:
+def _empty_before(cls: SymbolEntry, reader: BaseReader) -> str:
     """What on the way to instances of a class is None, or empty, where nobody has filled it, and what fills it; the
     first first.
     """
     told: list[str] = []
-    at: Symbol | None = cls
+    at: SymbolEntry | None = cls
     while at is not None and at.lacks and (pointer := reader.symbol(at.lacks)):
         if text := _empty_text(pointer, reader):
             told.append(text)
-        owner = reader.symbol(pointer.owner)
-        at = owner if owner and owner is not at and _leads_on(owner, at) else None
+        owner = reader.entry(pointer.owner)
+        at = owner if owner and owner.path != at.path and _leads_on(owner, at) else None
     return "".join(f"; {text}" for text in reversed(told))
 
 
-def _leads_on(owner: Symbol, cls: Symbol) -> bool:
+def _leads_on(owner: SymbolEntry, cls: SymbolEntry) -> bool:
     """Whether the way to a class goes on from that to the owner of what it lacks."""
     return (
         bool(owner.reached)
