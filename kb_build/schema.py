@@ -33,7 +33,6 @@ class Mark(IntFlag):
     DEPRECATED = auto()
     UNSEEN = auto()  # the default that its line tells is RNA's alone: no new instance was compared
     GIVEN = auto()  # a pointer that is None on all new things, and that an assignment alone fills
-    CUT = auto()  # its line does not tell all values that can be given to it
 
 
 # The levels of the documents.
@@ -49,7 +48,8 @@ DDL = """
 CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 
 -- One row an identifier; ``marks`` are of Mark, ``line`` describes it in one line, ``record`` is the whole Symbol,
--- packed (see pack), of which ``reached`` and ``lacks`` stand here as well.
+-- packed (see pack), of which ``reached`` and ``lacks`` stand here as well. ``choices`` are the stems of what its
+-- arguments and values are called, where its line does not tell them all.
 CREATE TABLE symbols (
     id INTEGER PRIMARY KEY,
     path TEXT NOT NULL UNIQUE,
@@ -66,6 +66,7 @@ CREATE TABLE symbols (
     line TEXT NOT NULL,
     reached TEXT NOT NULL,
     lacks TEXT NOT NULL,
+    choices TEXT NOT NULL,
     record BLOB NOT NULL
 );
 

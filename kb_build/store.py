@@ -89,7 +89,7 @@ def _insert(
 
 
 def _write_symbols(connection: sqlite3.Connection, tables: SymbolTables) -> None:
-    _insert(connection, "symbols", tables.symbols, 16)
+    _insert(connection, "symbols", tables.symbols, 17)
     _insert(connection, "names", tables.names, 3)
     _insert(connection, "enum_items", tables.enum_items, 4)
     _insert(connection, "operator_arguments", tables.operator_arguments, 2)

@@ -30,8 +30,8 @@ _Shared = TypeVar("_Shared")
 
 EXTEND = "__extend__"  # the identifier of the socket at which a node gets more
 # As numbers: a test of a flag takes a microsecond, and answers make many.
-_READ_ONLY, _DEPRECATED, _UNSEEN, _GIVEN, _CUT = (
-    int(mark) for mark in (Mark.READ_ONLY, Mark.DEPRECATED, Mark.UNSEEN, Mark.GIVEN, Mark.CUT)
+_READ_ONLY, _DEPRECATED, _UNSEEN, _GIVEN = (
+    int(mark) for mark in (Mark.READ_ONLY, Mark.DEPRECATED, Mark.UNSEEN, Mark.GIVEN)
 )
 PROPERTIES = "bpy.props."  # whose functions scripts import by name
 UNLIMITED = float("inf")
@@ -40,7 +40,8 @@ UNLIMITED = float("inf")
 class SymbolEntry(NamedTuple):
     """The part of a symbol that resolving needs; the whole record is read only for answers.
 
-    ``line`` describes it in the list of its owner's members. ``reached`` and ``lacks`` are a class's, as in its record.
+    ``line`` describes it in the list of its owner's members. ``reached`` and ``lacks`` are a class's, as in its record;
+    ``choices``: the stems of what its arguments and values are called, where the line does not tell them all.
     """
 
     path: str
@@ -57,6 +58,7 @@ class SymbolEntry(NamedTuple):
     line: str
     reached: str
     lacks: str
+    choices: str
 
     @property
     def head(self) -> str:
@@ -82,11 +84,6 @@ class SymbolEntry(NamedTuple):
     def is_given(self) -> bool:
         """Whether it is a pointer that is None on all new things, and that an assignment alone fills."""
         return bool(self.marks & _GIVEN)
-
-    @property
-    def may_have_more(self) -> bool:
-        """Whether its line does not tell all values that can be given to it."""
-        return bool(self.marks & _CUT)
 
 
 class PageEntry(NamedTuple):
@@ -133,7 +130,7 @@ class Use:
     code: str
 
 
-_ENTRY = "path, kind, owner, name, type, target, collection, base, grp, label, marks, line, reached, lacks"
+_ENTRY = "path, kind, owner, name, type, target, collection, base, grp, label, marks, line, reached, lacks, choices"
 _PAGE = "slug, source, version, title, parent, url, summary, summary_method"
 
 
@@ -152,9 +149,10 @@ class BaseReader:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self._connection = open_file(path)
+        connection = open_file(path)
+        self._cursor = connection.cursor()
         self._opened = ExitStack()
-        self.close_with(self._connection.close)
+        self.close_with(connection.close)
         self._work_left = UNLIMITED
         # A symbol's or page's row, or None; the pages right below one, in the manual's order; the targets of a symbol's
         # links to the manual, and the URL of the first that is a page; (form, id) of everything spelled like a key (see
@@ -196,7 +194,7 @@ class BaseReader:
     def rows(self, sql: str, *values: object) -> list[Any]:
         """Runs one SQL query. Raises BaseUnreadable for a damaged file, and BadQuery (see ``bounded``)."""
         try:
-            rows = self._connection.execute(sql, values).fetchall()
+            rows = self._cursor.execute(sql, values).fetchall()
         except UnicodeEncodeError:
             return []  # a lone surrogate is in no base
         except sqlite3.DatabaseError as error:
@@ -244,6 +242,11 @@ class BaseReader:
     def meta(self) -> dict[str, str]:
         """Facts about the base: version, build, fingerprint, sources, missing sources, …"""
         return dict(self.rows("SELECT name, value FROM meta"))
+
+    @cached_property
+    def missing_sources(self) -> list[str]:
+        """What the documentation that the base was built without is to it: its manual."""
+        return [row["role"] for row in json.loads(self.meta.get("missing", "[]"))]
 
     def _entries(self, paths: Sequence[str]) -> dict[str, SymbolEntry | None]:
         rows = self.rows_of(f"SELECT {_ENTRY} FROM symbols WHERE path", paths)

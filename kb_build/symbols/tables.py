@@ -9,7 +9,7 @@ from itertools import groupby
 from operator import attrgetter, itemgetter, or_
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key, short_path, topic_key
+from kb_build.index.analysis import key, short_path, terms, topic_key
 from kb_build.index.creation import creation_calls
 from kb_build.index.empty_ways import EmptyWays
 from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT, FORM_TOPIC, Mark, pack
@@ -70,7 +70,7 @@ def symbol_tables(
                 number, symbol.path, symbol.kind, symbol.owner, symbol.name, symbol.type, symbol.target,
                 symbol.collection, symbol.base, symbol.group, symbol.label, int(marks_of(symbol)),
                 member_line(symbol, on.get(symbol.path, "")),
-                symbol.reached, symbol.lacks, record or pack(to_json(symbol)),
+                symbol.reached, symbol.lacks, choices_of(symbol), record or pack(to_json(symbol)),
             )
             for number, (symbol, record) in enumerate(zip(placed, records, strict=True))
         ],
@@ -95,9 +95,18 @@ def marks_of(symbol: Symbol) -> Mark:
         Mark.DEPRECATED: symbol.deprecation is not None,
         Mark.UNSEEN: has_unseen_default(symbol),
         Mark.GIVEN: empty is not None and not empty.made and not fillers(symbol),
-        Mark.CUT: leaves_out_values(symbol),
     }
     return reduce(or_, (mark for mark, holds in known.items() if holds), Mark(0))
+
+
+def choices_of(symbol: Symbol) -> str:
+    """The stems of the words of a symbol's arguments and values; empty where its line tells them all."""
+    if not leaves_out_values(symbol):
+        return ""
+    items = (symbol.enum_items, *(parameter.enum_items for parameter in symbol.parameters))
+    names = [name for each in items for item in each for name in (item.name, item.identifier)]
+    names += (name for parameter in symbol.parameters for name in (parameter.name, parameter.label))
+    return " ".join(sorted({stem for name in names for stem in terms(name)}))
 
 
 def symbol_names(symbol: Symbol) -> Iterator[tuple[str, int, str]]:

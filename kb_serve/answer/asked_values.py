@@ -55,9 +55,14 @@ def asked_words(question: str) -> tuple[str, ...]:
     return tuple(terms(_NOT_WANTED.sub(" ", question)))
 
 
+def unsaid(path: str, label: str, asked: Iterable[str]) -> frozenset[str]:
+    """Of the words ``asked`` (stems) those that neither the symbol itself says, nor most others."""
+    return frozenset(asked) - {*terms(path), *terms(label)} - _COMMON
+
+
 def asked_values(symbol: Symbol, asked: Sequence[str]) -> list[AskedValue]:
     """What of a symbol the words ``asked`` (stems) speak of besides the symbol itself, most words first."""
-    left = frozenset(asked) - {*terms(symbol.path), *terms(symbol.label)} - _COMMON
+    left = unsaid(symbol.path, symbol.label, asked)
     if not left:
         return []
     told = _Told(asked, left)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from functools import lru_cache
 from itertools import zip_longest
@@ -221,13 +220,11 @@ class AnswerComposer:
 
     def _source_notes(self, ranking: Ranking, hits: Sequence[Hit]) -> Iterator[str]:
         """Notes on the documentation behind the answer: pages of other versions, missing sources."""
-        meta = self._reader.meta
-        minor = meta.get("minor", "")
+        minor = self._reader.meta.get("minor", "")
         pages = [page for hit in hits if hit.is_page and (page := self._reader.page_entry(hit.id))]
         for version in sorted({page.version for page in pages} - {minor, ""}):
             yield f"These pages are from the documentation of Blender {version}, not {minor}."
-        missing = [row["role"] for row in json.loads(meta.get("missing", "[]"))]
-        if missing and not ranking.named:
+        if (missing := self._reader.missing_sources) and not ranking.named:
             without = " and the ".join(missing)
             yield f"This base was built without the {without}; `simworlds kb info {minor}` says why."
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.lines import first_sentence, written
-from kb_serve.answer.asked_values import asked_values
+from kb_serve.answer.asked_values import asked_values, unsaid
 from kb_serve.answer.budget import AnswerBlock, clip
 from kb_serve.answer.pages import said_of
 
@@ -77,7 +77,7 @@ class HitLines:
     def asked(self, hit: Hit, asked: Sequence[str]) -> list[AskedValue]:
         """The arguments and values of a hit that the question speaks of."""
         entry = None if not asked or hit.is_page else self._reader.entry(hit.id)
-        if entry is None or not entry.may_have_more:
+        if entry is None or unsaid(entry.path, entry.label, asked).isdisjoint(entry.choices.split()):
             return []
         symbol = self._reader.symbol(hit.id)
         return asked_values(symbol, asked) if symbol else []

@@ -96,11 +96,10 @@ class NamesBeside:
         """Adds a module's member that stands beside the module, ``from bpy_extras.object_utils import
         world_to_camera_view``: it comes before the module.
         """
-        names = [chain.root for chain in chains if chain.is_code]
         for chain in chains:
             module = self._reader.entry(chain.dotted) if chain.steps else None
             if module and module.kind == "module":
-                for name in names:
+                for name in (other.root for other in chains if other.is_code):
                     if self._reader.entry(f"{module.path}.{name}"):
                         recognition.add(f"{module.path}.{name}", 0.98, "module and member")
 
