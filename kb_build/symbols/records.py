@@ -266,7 +266,7 @@ class Refusal:
 
 def told_by(flags: Iterable[str], prefix: str) -> tuple[str, ...]:
     """What the flags that begin with ``prefix`` say."""
-    return tuple(flag.removeprefix(prefix) for flag in flags if flag.startswith(prefix))
+    return tuple([flag.removeprefix(prefix) for flag in flags if flag.startswith(prefix)])
 
 
 @value_class
@@ -393,7 +393,7 @@ class Symbol:
 
     def flagged(self, prefix: str) -> tuple[str, ...]:
         """What the flags that begin with ``prefix`` say."""
-        return told_by(self.flags, prefix)
+        return told_by(self.flags, prefix) if self.flags else ()
 
 
 @value_class
