@@ -100,6 +100,8 @@ class TopicPages:
         if is_quoted_value(text, self._reader):
             return ""
         plain = _WHAT_IS.sub("", text.strip().strip("`'\"?!."))
+        if " " not in plain and not _OF_CODE.isdisjoint(plain):  # a path, which no title is
+            return self._in_other_words(plain)
         if turned := _MADE_FROM.fullmatch(plain):
             slug = self._called(f"{turned['source']} to {turned['made']}")
             page = self._reader.page_entry(slug)

@@ -113,6 +113,13 @@ class InvertedIndex:
         return units, units + topics, units + topics + len(self.asked)
 
     @cached_property
+    def topics(self) -> NDArray[np.intp]:
+        """For each unit the number of its topic among all documents; of those that have none, the one behind them."""
+        units, documents, _ = self.ends
+        own = self.levels[0].topics.astype(np.intp)
+        return np.where(own >= 0, units + own, documents)
+
+    @cached_property
     def counts(self) -> Scores:
         """How much each unit counts among its like, on a scale that begins at 0. Raises BaseUnreadable."""
         weights: list[tuple[str, float]] = self._reader.rows("SELECT path, weight FROM weights")

@@ -28,7 +28,7 @@ class Concept:
 
 class Scored(NamedTuple):
     """Of every document, by number: its score, and its coverage, the share of the query that it speaks of. What has
-    none of the query's stems has 0.
+    none of the query's stems has 0, as has the one behind them, the topic of what has none.
     """
 
     scores: Scores
@@ -48,7 +48,7 @@ class SaidPhrases:
 
 def score_all(index: InvertedIndex, concepts: Sequence[Concept]) -> Scored:
     """Scores the documents of an index by the concepts of a query."""
-    documents = index.ends[1]
+    documents = index.ends[1] + 1
     scores, coverage = np.zeros(documents, np.float32), np.zeros(documents, np.float32)
     for postings, weight, share in _weighed(index, concepts):
         numbers = postings.numbers[: postings.documents]

@@ -205,8 +205,8 @@ class Searcher:
         if not len(numbers):
             return None
         told = scores * coverage if COVERAGE else scores
-        own, topic = told[numbers], units.topics[numbers]
-        around = np.where(topic >= 0, told[units.count + topic], ALONE * own)
+        own, topic = told[numbers], self.index.topics[numbers]
+        around = np.where(topic < self.index.ends[1], told[topic], ALONE * own)
         texts = _float32(own + TOPIC_WEIGHT * around)
         best = best_first(texts, _CANDIDATES)
         numbers, texts, topic = numbers[best], texts[best], topic[best]
@@ -251,24 +251,24 @@ class Searcher:
         return self._reader.labels_below(NODE)
 
     def _asked(
-        self, concepts: Sequence[Concept], numbers: NDArray[np.intp], topic: NDArray[np.int32]
+        self, concepts: Sequence[Concept], numbers: NDArray[np.intp], topic: NDArray[np.intp]
     ) -> Scores:
         """How nearly the query is, word by word, what units or their topics are asked for, from 0: nothing.
 
         The nearest phrase counts, and in part what all of the same add up to, in the power of 1.5: a question often
         mixes the words of a few.
         """
-        units, documents, _ = self.index.ends
-        places = np.stack((numbers, np.where(topic >= 0, units + topic, documents)))
-        wanted = np.zeros(documents + 1, np.bool_)  # the last: of the units that have no topic
+        places = np.concatenate((numbers, topic))
+        wanted = np.zeros(self.index.ends[1] + 1, np.bool_)  # the last: of the units that have no topic
         wanted[places] = True
         said = said_phrases(self.index, concepts, wanted)
         near = np.sqrt(np.minimum(said.shares, 1) * said.coverage)
         nearest = np.zeros(len(wanted), np.float32)
         np.maximum.at(nearest, said.asked, near)
         sums = np.bincount(said.asked, near * np.sqrt(near), len(wanted))
-        best = nearest[places]
-        return _float32((best + _OTHERS * (np.cbrt(np.square(sums[places])) - best)).max(axis=0))
+        best, summed = nearest[places], sums[places]
+        asked = best + _OTHERS * (np.cbrt(summed * summed) - best)
+        return _float32(np.maximum(asked[: len(numbers)], asked[len(numbers) :]))
 
     def _varied(self, order: Iterable[int], ranked: _Ranked, limit: int) -> list[int]:
         """Of the places of ranked units each ref's first, and the first member of a name before other members of that

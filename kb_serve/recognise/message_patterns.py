@@ -175,6 +175,7 @@ _WORDING = re.compile(
 )
 
 
+@lru_cache(maxsize=8)  # asked of one query several times
 def may_be_message(query: str) -> bool:
     """Whether a query has words of a message that one of these patterns fits."""
     return any(sign in query for sign in _SIGNS)
@@ -185,7 +186,7 @@ def first_matches(pattern: re.Pattern[str], query: str) -> Iterator[re.Match[str
     return islice(pattern.finditer(query), _MOST_MATCHES)
 
 
-@lru_cache(maxsize=8)  # asked of one query several times
+@lru_cache(maxsize=8)  # the same
 def is_message(query: str) -> bool:
     """Whether a query holds an error message."""
     return bool(_EXCEPTION.search(query) or _REPORT.search(query) or _WORDING.search(query))
