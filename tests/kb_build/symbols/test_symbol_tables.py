@@ -8,8 +8,8 @@ import pytest
 
 from kb_build.index.analysis import topic_key
 from kb_build.schema import Mark
-from kb_build.symbols.records import Deprecation, NewValue, Page, Symbol
-from kb_build.symbols.tables import action_names, marks_of
+from kb_build.symbols.records import Deprecation, EnumItem, NewValue, Page, Parameter, Symbol
+from kb_build.symbols.tables import action_names, choices_of, marks_of
 
 
 def page(slug: str, title: str) -> Page:
@@ -54,3 +54,16 @@ NUMBER = Symbol("bpy.types.A.n", "property", "bpy.types.A", type="int", default=
 )
 def test_marks_say_what_lists_of_members_ask_of_a_symbol(symbol: Symbol, marks: Mark) -> None:
     assert marks_of(symbol) == marks
+
+
+def test_choices_are_the_words_of_arguments_and_values_that_a_line_leaves_out() -> None:
+    items = (EnumItem("CROSS", "Cross Fades"), EnumItem("ADD", "Add"))
+    called = Symbol(
+        "bpy.ops.a.b",
+        "operator",
+        "bpy.ops.a",
+        parameters=(Parameter("frame_start", "int", label="Start"), Parameter("type", enum_items=items)),
+    )
+    assert set(choices_of(called).split()) == {"cross", "fade", "add", "frame", "start", "type"}
+    assert choices_of(replace(called, parameters=())) == ""
+    assert choices_of(replace(NUMBER, type="enum", enum_items=items)) == ""  # few: its line has them

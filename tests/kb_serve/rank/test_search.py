@@ -6,12 +6,13 @@ import math
 import random
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 from asking import SEED, of_data
 
 from kb_build.index.analysis import STOP_WORDS, stem, terms, words
 from kb_build.index.query_expansions import load_query_expansions
-from kb_serve.rank.search import Searcher
+from kb_serve.rank.search import Searcher, best_first
 from kb_serve.rank.weights import WEIGHTS
 
 if TYPE_CHECKING:
@@ -184,3 +185,11 @@ def test_words_around_a_query_count_less_than_its_own(searcher: Searcher) -> Non
 )
 def test_a_plain_wish_finds_what_does_it(kb: KnowledgeBase, question: str, path: str) -> None:
     assert path in [hit.id for hit in kb.query(question).hits[:3]]
+
+
+@pytest.mark.parametrize("count", [1, 40, 499, 500, 900])
+def test_best_first_keeps_equal_scores_in_their_order(count: int) -> None:
+    chance = random.Random(count)
+    scores = np.array([chance.choice([1e-30, 0.25, 0.5, 3.0, 1e9]) for _ in range(500)], np.float32)
+    expected = sorted(range(500), key=lambda place: -scores[place])[:count]
+    assert best_first(scores, count).tolist() == expected
