@@ -10,7 +10,7 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
 PART_TOKENS = 80
 _BYTES_PER_TOKEN = 3  # fewer than tokenizers reach with English, Markdown and names: the budget holds
@@ -59,16 +59,14 @@ def cut(blocks: Iterable[AnswerBlock]) -> list[AnswerPart]:
     """The parts of an answer, each of at most ``PART_TOKENS``; an empty answer is one empty part."""
     parts: list[AnswerPart] = []
     for text, name, _ in blocks:
-        size = len if text.isascii() else _bytes
-        if (whole := size(text)) <= _PART_BYTES:
-            parts.append(AnswerPart(text, name, "\n\n", whole))
+        encoded = text.encode(errors="replace")
+        if len(encoded) <= _PART_BYTES:
+            parts.append(AnswerPart(text, name, "\n\n", len(encoded)))
             continue
         glue, used = "\n\n", 0
         held: list[str] = []
-        for line in text.split("\n"):
-            length = size(line)
-            is_long = length > _PART_BYTES
-            for before, piece, added in _pieces(line, size) if is_long else (("\n", line, length),):
+        for line, size in zip(text.split("\n"), map(len, encoded.split(b"\n")), strict=True):
+            for before, piece, added in _pieces(line) if size > _PART_BYTES else (("\n", line, size),):
                 if held and used + len(before) + added <= _PART_BYTES:
                     held += (before, piece)
                     used += len(before) + added
@@ -81,16 +79,16 @@ def cut(blocks: Iterable[AnswerBlock]) -> list[AnswerPart]:
     return parts or [AnswerPart("", "", "", 0)]
 
 
-def _pieces(line: str, size: Callable[[str], int]) -> Iterator[tuple[str, str, int]]:
+def _pieces(line: str) -> Iterator[tuple[str, str, int]]:
     """The words of a line up to where it is longer than a part: what stands before them, they, and their size."""
     before, rest = "\n", line
-    while size(rest) > _PART_BYTES:
+    while _bytes(rest) > _PART_BYTES:
         head = rest.encode(errors="replace")[:_PART_BYTES].decode(errors="ignore")
         space = head.rfind(" ")
         end, after = (space, " ") if space > len(head) // 2 else (len(head), "")
-        yield before, head[:end], size(head[:end])
+        yield before, head[:end], _bytes(head[:end])
         before, rest = after, rest[end + len(after) :]
-    yield before, rest, size(rest)
+    yield before, rest, _bytes(rest)
 
 
 def shown(parts: Sequence[AnswerPart], first: int, budget: int) -> tuple[str, int]:

@@ -12,8 +12,6 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from rapidfuzz import process
-from rapidfuzz.distance import OSA
 
 from kb_build.index.analysis import STOP_WORDS, stem, stems_of, words
 from kb_build.schema import DOCUMENT_KINDS
@@ -98,6 +96,9 @@ class Searcher:
         """The corpus' word that an unknown one was probably meant to be; empty when none is near."""
         if len(word) < 4 or not word.isalpha():
             return ""
+        from rapidfuzz import process  # noqa: PLC0415 - most words are spelled right
+        from rapidfuzz.distance import OSA  # noqa: PLC0415
+
         allowed = 1 if len(word) < _TWO_TYPOS else 2
         matches = process.extract(word, self._spellings, scorer=OSA.distance, score_cutoff=allowed, limit=5)
         same_start = [match for match in matches if match[0][0] == word[0]]
