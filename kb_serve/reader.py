@@ -149,10 +149,9 @@ class BaseReader:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        connection = open_file(path)
-        self._cursor = connection.cursor()
+        self._connection = open_file(path)
         self._opened = ExitStack()
-        self.close_with(connection.close)
+        self.close_with(self._connection.close)
         self._work_left = UNLIMITED
         # A symbol's or page's row, or None; the pages right below one, in the manual's order; the targets of a symbol's
         # links to the manual, and the URL of the first that is a page; (form, id) of everything spelled like a key (see
@@ -194,7 +193,7 @@ class BaseReader:
     def rows(self, sql: str, *values: object) -> list[Any]:
         """Runs one SQL query. Raises BaseUnreadable for a damaged file, and BadQuery (see ``bounded``)."""
         try:
-            rows = self._cursor.execute(sql, values).fetchall()
+            rows = self._connection.execute(sql, values).fetchall()
         except UnicodeEncodeError:
             return []  # a lone surrogate is in no base
         except sqlite3.DatabaseError as error:

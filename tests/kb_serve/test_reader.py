@@ -123,6 +123,7 @@ def test_no_look_up_reads_a_whole_table(base: Path) -> None:
         lambda r: r.removed("x"), lambda r: r.removed_by_key("x"), lambda r: r.successors("x"),
         lambda r: r.similar_names("x"), lambda r: r.since("x"),
         lambda r: r.manual_links("bpy.types.Object"), lambda r: r.operators_taking("type"),
+            lambda r: r.manual_url("bpy.types.Object"), lambda r: r.passage_text("bpy.types.Object"),
         lambda r: r.page_entry("physics/index"), lambda r: r.page_children("physics/index"),
         lambda r: r.symbols_of_page("physics/index"), lambda r: r.page("physics/cloth/introduction"),
     ]  # fmt: skip
