@@ -77,7 +77,9 @@ class HitLines:
     def asked(self, hit: Hit, asked: Sequence[str]) -> list[AskedValue]:
         """The arguments and values of a hit that the question speaks of."""
         entry = None if not asked or hit.is_page else self._reader.entry(hit.id)
-        if entry is None or unsaid(entry.path, entry.label, asked).isdisjoint(entry.choices.split()):
+        if entry is None or not entry.choices:
+            return []
+        if unsaid(entry.path, entry.label, asked).isdisjoint(entry.choices.split()):
             return []
         symbol = self._reader.symbol(hit.id)
         return asked_values(symbol, asked) if symbol else []
