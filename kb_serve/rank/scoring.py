@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import accumulate
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -65,8 +66,8 @@ def said_phrases(index: InvertedIndex, concepts: Sequence[Concept], wanted: NDAr
     (kept,) = wanted[index.asked[numbers]].nonzero()
     found = numbers[kept]
     # Which concept has told of each.
-    ends = np.cumsum([len(postings.numbers) - postings.documents for postings, *_ in weighed])
-    concept = ends.searchsorted(kept, "right")
+    ends = accumulate(len(postings.numbers) - postings.documents for postings, *_ in weighed)
+    concept = np.array([*ends]).searchsorted(kept, "right")
     weights = np.array([weight for _, weight, _ in weighed])[concept]
     saturated = np.concatenate([postings.saturated[postings.documents :] for postings, *_ in weighed])[kept]
     phrases = np.sort(found)
