@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import re
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 from told_by_blender import told_by_blender
 
-from kb_serve.recognise.message_patterns import prose_of
+from kb_serve.recognise import message_patterns
+from kb_serve.recognise.message_patterns import may_be_message, prose_of
 from kb_serve.recognise.messages.outside_areas import OUTSIDE
 from kb_serve.recognise.names.layers import in_layers
 
@@ -1297,3 +1300,21 @@ def test_an_area_of_a_window_is_there_outside_of_any() -> None:
     assert area.spaces.active.type == "VIEW_3D"
     with context.temp_override(area=area):
         assert bpy.context.space_data.type == "VIEW_3D"
+
+
+def test_what_a_pattern_fits_is_told_from_a_question_by_one_of_its_words() -> None:
+    """All messages that stand in this module, also in parts of texts."""
+    nodes = ast.walk(ast.parse(Path(__file__).read_text(encoding="utf-8")))
+    texts = [node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+    known = vars(message_patterns).items()
+    # These are looked for in messages that others fit.
+    named = {name: one for name, one in known if name.isupper() and not name.startswith("_")}
+    patterns = [
+        one
+        for name, one in named.items()
+        if name not in {"MEANT", "SUBSCRIPTED"} and isinstance(one, re.Pattern)
+    ]
+    fitting = [text for text in texts if any(pattern.search(text) for pattern in patterns)]
+    assert len(fitting) > 100
+    assert [text for text in fitting if not may_be_message(text)] == []
+    assert not may_be_message("make a cloth collide with itself")
