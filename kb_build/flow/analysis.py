@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from kb_build.flow.calls import Calls
-from kb_build.flow.core import StepsExhausted
 from kb_build.flow.functions import Functions
 from kb_build.flow.other_versions import doubt_what_others_use
 from kb_build.flow.parse import parsed, too_long
@@ -122,14 +121,13 @@ class Analyzer(Statements, Functions, Calls):
         file.started = True
         file.module.shared = file.shared_names[file.tree]
         self.importing += 1
-        steps_left, self.steps_left = self.steps_left, file.steps_left
         try:
-            with self.at(replace(self.here.further(file, file.module, None), tries=False)):
+            with (
+                self.charged_to(file),
+                self.at(replace(self.here.further(file, file.module, None), tries=False)),
+            ):
                 self._guarded_read(file)
-        except StepsExhausted:
-            file.complete = False
         finally:
-            file.steps_left, self.steps_left = self.steps_left, steps_left
             self.importing -= 1
 
     def _guarded_read(self, file: SourceFile) -> None:
@@ -156,14 +154,10 @@ class Analyzer(Statements, Functions, Calls):
             if settled and not function.stale and self.is_current(function):
                 continue
             found = True
-            self.steps_left = file.steps_left
             try:
                 self.run(number)
             except RecursionError:
                 file.unread.add(self.functions[number].node.args)
-            except StepsExhausted:
-                file.complete = False
-            file.steps_left = self.steps_left
         return found or any(function.stale for function in self.functions)
 
     def _turn(self, number: int) -> int:

@@ -81,7 +81,7 @@ class Core:
         self.registered: dict[tuple[str, str], Type] = {}
         self.rounds = False  # all modules were read, their functions are
         self.settled = False  # and no function will be read again for all its calls
-        self.steps_left = files[0].steps_left
+        self.charged, self.steps_left = files[0], files[0].steps_left
         self._bases: dict[int, tuple[tuple[str, ...], bool]] = {}
         self._denials: list[tuple[dict[ast.AST, Resolution], ast.AST, Reader]] = []
 
@@ -92,6 +92,21 @@ class Core:
         self.steps_left -= things // _IN_ONE_STEP
         if self.steps_left < 0:
             raise StepsExhausted
+
+    @contextmanager
+    def charged_to(self, file: SourceFile) -> Generator[None]:
+        """Takes what is read off what may be spent on a file, whoever calls for it; one that takes too long is left."""
+        outer, left, is_tried = self.charged, self.steps_left, self.here.tries
+        if not is_tried:
+            outer.steps_left = left
+        self.charged, self.steps_left = file, file.steps_left
+        try:
+            yield
+        except StepsExhausted:
+            file.complete = False
+        finally:
+            file.steps_left = self.steps_left
+            self.charged, self.steps_left = outer, left if is_tried else outer.steps_left
 
     def copied(self, state: State) -> State:
         """The same state, to be changed on its own; this pays for joining it with others too."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from contextlib import nullcontext
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -47,8 +48,9 @@ class Functions(Parameters, Trials):
         function.readings = {}
         function.uses = set()
         function.carried = {}
+        place = self._place_of(function)
         try:
-            with self.at(self._place_of(function)):
+            with self.charged_to(place.file) if not self.here.tries else nullcontext(), self.at(place):
                 self._read_function(function)
         finally:
             function.running = False
