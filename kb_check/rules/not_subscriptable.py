@@ -52,6 +52,7 @@ from kb_check.rule import Rule
 from kb_check.running.raised import LACKS_KEY, REFUSES
 from kb_check.running.tried import is_tried
 from kb_check.script import once_per_script
+from kb_check.syntax.annotated import ONE_IS_WRONG, annotated
 from kb_check.syntax.bindings import bindings
 from kb_check.syntax.literals import number
 from kb_check.values.conversions import CHANGING_ARRAYS
@@ -94,6 +95,10 @@ def _check(script: Script) -> Iterator[Finding]:
         if (missing := _of_result(script, node)) and isinstance(kind, Mapping):
             told = {missing}
         if len(told) == 1 and (message := told.pop()) and not _is_guarded(script, node):
+            if isinstance(kind, Instance) and (said := annotated(script, node.value, kind.cls)):
+                told = f"{message} {said}: {ONE_IS_WRONG}."
+                yield Finding(RULE.id, "warning", script.span(node), told)
+                continue
             yield Finding(RULE.id, "error", script.span(node), message, "", (), _fix(script, node))
 
 

@@ -184,6 +184,16 @@ def test_what_a_function_is_annotated_to_return_is_a_doubt(rule_checker: Checker
     assert finding.severity == "error"
 
 
+def test_items_of_what_is_annotated_as_one_thing_are_a_doubt(rule_checker: Checker) -> None:
+    code = "import bpy\ndef join(link: {annotation}):\n    return link[0]['node']\n"
+    (finding,) = rule_checker.check(code.format(annotation="bpy.types.NodeLink"))
+    assert (finding.rule, finding.severity) == ("not-subscriptable", "warning")
+    assert (
+        "`link` is annotated as `bpy.types.NodeLink`: the annotation or the use is wrong" in finding.message
+    )
+    assert not rule_checker.check(code.format(annotation="list"))
+
+
 @pytest.mark.parametrize(
     ("annotation", "use"),
     [
