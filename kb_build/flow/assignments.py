@@ -6,7 +6,7 @@ import ast
 
 from kb_build.flow.annotations import Annotations
 from kb_build.flow.expressions import is_math
-from kb_build.flow.facts import DISCRIMINANTS
+from kb_build.flow.facts import AREA, AREA_TYPES, DISCRIMINANTS, SPACE
 from kb_build.flow.guards import Guards
 from kb_build.flow.scopes import chain_text, item_text
 from kb_build.flow.types import (
@@ -192,7 +192,7 @@ class Assignments(Guards, Annotations):
                 target, use, target.attr, found.symbols, missing, found.possible,
                 sure=found.sure, guarded=self.here.scope.state.doubts_members_of(target.value),
             )  # fmt: skip
-        if target.attr in DISCRIMINANTS:
+        if target.attr in DISCRIMINANTS or target.attr in AREA_TYPES:
             self._forget_kinds(owner)
         if found.symbols and value is not None:
             self.check_value(found.type, value)
@@ -207,9 +207,8 @@ class Assignments(Guards, Annotations):
 
     def _forget_kinds(self, owner: Type) -> None:
         """Something becomes of another class: what is read anew from a chain may be that."""
-        bases = {
-            self.api.settable_kind(kind.cls) for kind in members(owner) if isinstance(kind, Instance)
-        } - {""}
+        classes = [kind.cls for kind in members(owner) if isinstance(kind, Instance)]
+        bases = {SPACE if cls == AREA else self.api.settable_kind(cls) for cls in classes} - {""}
         chains = self.here.scope.state.chains
         self.spend(len(chains))
         for text, kind in [*chains.items()] if bases else ():

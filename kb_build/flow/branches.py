@@ -44,6 +44,11 @@ class Branches(Guards, Ways):
     def read_match(self, node: ast.Match) -> bool:
         """Reads ``match``: each case with what it tells of the subject."""
         subject = self.evaluate(node.subject)
+        # A case notes what it tells at the subject's own parts, which all cases share.
+        types = self.here.types
+        parts = {
+            part: types[part] for part in walk(node.subject) if isinstance(part, ast.expr) and part in types
+        }
         before = self.here.scope.state
         otherwise = self.copied(before)
         otherwise.doubted |= self.asked(node.subject) | CHOSEN
@@ -51,6 +56,7 @@ class Branches(Guards, Ways):
         whole = False
         for case in node.cases:
             self.here.scope.state = self.copied(otherwise)
+            types.update(parts)
             self._bind_pattern(case.pattern, subject, node.subject)
             if case.guard is not None:
                 self.evaluate(case.guard)

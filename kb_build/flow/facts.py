@@ -94,6 +94,8 @@ CLASS_OF_VALUE = {
 
 # The properties that tell an instance's class by their value, best first.
 DISCRIMINANTS = ("type", "bl_idname", "data_type", "effector_type")
+# What an area shows is a space of the class that its type names; the second tells apart the trees of its nodes.
+AREA, SPACE, AREA_TYPES = f"{T}Area", f"{T}Space", ("type", "ui_type")
 
 # Classes whose instances have whatever a script, an add-on or an operator gave them.
 OPEN_CLASSES = (

@@ -6,7 +6,7 @@ import ast
 from dataclasses import replace
 
 from kb_build.flow.doubts import Doubts
-from kb_build.flow.facts import DISCRIMINANTS
+from kb_build.flow.facts import AREA, DISCRIMINANTS, SPACE
 from kb_build.flow.guards import Guards
 from kb_build.flow.scopes import chain_text
 from kb_build.flow.trees import default_values
@@ -29,7 +29,7 @@ from kb_build.flow.types import (
 )
 from kb_build.symbols.api_names import OBJECT
 
-_AREA, _SPACE, _ACTIVE_SPACE = "bpy.types.Area", "bpy.types.Space", "spaces.active"
+_ACTIVE_SPACE = "spaces.active"
 
 
 class Narrowing(Guards):
@@ -155,7 +155,7 @@ class Narrowing(Guards):
     def _told_apart(self, node: ast.expr, values: list[str]) -> None:
         """A value whose ``type`` is one of ``values``."""
         kind = without_none(self._type_of(node))
-        if isinstance(kind, Instance) and kind.cls == _AREA:
+        if isinstance(kind, Instance) and kind.cls == AREA:
             self._know_space(node, values)
             return
         found: list[Type] = []
@@ -175,7 +175,7 @@ class Narrowing(Guards):
 
     def _know_space(self, area: ast.expr, values: list[str]) -> None:
         """The active space of an area whose type is one of ``values`` is one of theirs."""
-        spaces = [self.api.class_of_value(_SPACE, value) for value in values]
+        spaces = [self.api.class_of_value(SPACE, value) for value in values]
         if (text := chain_text(area)) and all(spaces):
             self.here.scope.state.chains[f"{text}.{_ACTIVE_SPACE}"] = union(map(Instance, spaces))
 

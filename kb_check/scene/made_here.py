@@ -32,6 +32,7 @@ _PLAIN = re.compile(
     r"|wm\.(read_\w+|save_as_mainfile|save_mainfile)"
     r")"
 )
+_MAKING = "_add"  # how plain operators that make objects end
 _PRIMITIVE = re.compile(r"bpy\.ops\.mesh\.primitive_\w+_add")
 MESH = "bpy.types.Mesh"
 OBJECTS_NEW, LINKS_NEW = "bpy.types.BlendDataObjects.new", "bpy.types.NodeLinks.new"
@@ -132,7 +133,8 @@ def _is_mesh_object(kind: Type | None) -> bool:
 
 @once_per_script
 def _makes_meshes_only(script: Script) -> bool:
-    making = filter(made_by, called_operators(script))
+    """Whether all plain operators that make objects make meshes: an effector has a field from the start."""
+    making = (path for path in called_operators(script) if path.endswith(_MAKING))
     return all(map(_PRIMITIVE.fullmatch, making))
 
 

@@ -64,3 +64,20 @@ def test_the_order_on_one_line_counts(rule_checker: Checker) -> None:
     fill, read = "m.fluid_type = 'DOMAIN'; ", "m.domain_settings.domain_type = 'GAS'; "
     assert rule_checker.check(made + fill + read, rules=["empty-pointer"]) == []
     assert rule_checker.check(made + read + fill, rules=["empty-pointer"])
+
+
+_TWO_OBJECTS = """\
+import bpy
+bpy.ops.mesh.primitive_grid_add()
+flag = bpy.context.active_object
+bpy.ops.object.effector_add(type='WIND')
+bpy.context.active_object.field.strength = 200
+flag.field.strength = 2
+"""
+
+
+def test_an_effector_beside_a_mesh_has_its_field(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = _TWO_OBJECTS.splitlines()
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
+    found = rule_checker.check(_TWO_OBJECTS, rules=["empty-pointer"])
+    assert [one.span.line for one in found] == refused == [6]

@@ -56,3 +56,20 @@ if bpy.context.light.type == 'POINT':
     assert rule_checker.check(code, rules=["unknown-attribute"]) == []
     narrowed = code.replace("bpy.context.light.type = 'SUN'", "pass")
     assert [one.span.line for one in rule_checker.check(narrowed, rules=["unknown-attribute"])] == [4]
+
+
+def test_a_space_is_forgotten_when_its_area_shows_another_editor(rule_checker: Checker) -> None:
+    code = """\
+import bpy
+for area in bpy.context.screen.areas:
+    if area.type == 'VIEW_3D':
+        area.{name} = '{value}'
+        area.spaces.active.image = None
+if bpy.context.space_data.type == 'VIEW_3D':
+    bpy.context.area.{name} = '{value}'
+    bpy.context.space_data.image = None
+"""
+    for name, value in (("type", "IMAGE_EDITOR"), ("ui_type", "UV")):
+        assert rule_checker.check(code.format(name=name, value=value), rules=["unknown-attribute"]) == []
+    kept = rule_checker.check(code.format(name="tag", value=""), rules=["unknown-attribute"])
+    assert [one.span.line for one in kept if one.symbol.endswith("SpaceView3D.image")] == [5, 8]

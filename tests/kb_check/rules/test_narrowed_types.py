@@ -204,3 +204,27 @@ for node in bpy.context.object.active_material.node_tree.nodes:
     (found,) = rule_checker.check(code)
     assert (found.rule, found.span.line) == ("never-true", 4)
     assert "'EMISSION'" in found.message
+
+
+_MATCHED = """\
+import bpy
+ob = bpy.data.objects['Cube']
+ob.modifiers.new('bevel', 'BEVEL')
+ob.modifiers.new('subsurf', 'SUBSURF')
+ob.modifiers.new('solidify', 'SOLIDIFY')
+for mod in ob.modifiers:
+    match mod.type:
+        case 'BEVEL':
+            mod.width = .1
+        case 'SUBSURF' if mod.levels:
+            mod.levels = 2
+        case other:
+            mod.thickness = .1
+"""
+
+
+def test_each_case_of_a_match_is_read_with_its_own_type_alone(rule_checker: Checker, tmp_path: Path) -> None:
+    assert not any(error for error, *_ in run_statements(tmp_path, [_MATCHED]))
+    assert rule_checker.check(_MATCHED) == []
+    wrong = _MATCHED.replace("mod.levels = 2", "mod.width = 2")
+    assert [one.symbol for one in rule_checker.check(wrong)] == ["bpy.types.SubsurfModifier.width"]
