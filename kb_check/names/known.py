@@ -14,7 +14,6 @@ from kb_serve.rank.meant_members import meant_members
 from kb_serve.recognise.names.corrections import by_first_word, is_misspelling, nearest
 from kb_serve.recognise.names.enum_values import EnumValues
 from kb_serve.recognise.names.likely_keywords import likely_parameters
-from kb_serve.recognise.names.likely_values import likely_values
 from kb_serve.recognise.names.names_of_new import NamesOfNew
 from kb_serve.recognise.names.node_names import is_like_a_node, nodes_meant
 from kb_serve.recognise.names.operator_words import OperatorWords, same_operator_words
@@ -36,6 +35,7 @@ _KEPT = 512  # names that a class lacks, as one is often used many times
 # Methods of all structures, which are plurals of what properties are called.
 _PLURALS = frozenset({"items", "keys", "values"})
 _COLLECTION = f"{TYPES}bpy_prop_collection"
+_CONTEXT = f"{TYPES}Context"
 _TURNING_ON = frozenset({"use", "show", "is", "has"})  # what the names of switches begin with
 _PART = frozenset("([:")  # in the path of a parameter, a socket, an item
 
@@ -168,7 +168,7 @@ class KnownNames:
             beginning = whole + part[0]
             return self._removed_of(beginning, removed, f"`{owner}` takes no {value!r}")
         values = list(values)
-        similar = likely_values(value, values) or self._enum_values.explaining(owner, value)
+        similar = self._enum_values.likely(owner, value, values)
         return self._no_part(
             owner, value, values, f"{value!r} is not a value of `{owner}`", "It takes", similar
         )
@@ -212,7 +212,7 @@ class KnownNames:
         if f"{owner}." == TYPES and is_like_a_node(name):
             found = [last_name(path) for path in nodes_meant(name, self.reader)]
         else:
-            found = self._alike(name, names)
+            found = self._alike_members(owner, name, names)
         misspelt = [found for found in found if is_misspelling(name, found, self._vocabulary)]
         similar = [found for found in found if found not in machinery or found in misspelt]
         operators = [] if misspelt else self._operators.having(owner, name)
@@ -222,7 +222,7 @@ class KnownNames:
             and similar
             and not any(same_operator_words(last_name(path), name) for path in operators)
         ):
-            operators = [*(f"{owner}.{one}" for one in similar), *operators][:_MOST_NAMED]
+            operators = [*dict.fromkeys((*(f"{owner}.{one}" for one in similar), *operators))][:_MOST_NAMED]
         if operators:
             similar = [path.removeprefix(OPERATORS) for path in operators]
         elif methods := [] if misspelt else by_first_word(name, machinery):
@@ -243,9 +243,9 @@ class KnownNames:
 
     def _meant(self, owner: str, name: str, *, assigned: bool) -> list[str]:
         """What the search finds of a class or module by a name that it lacks; of its cases with theirs. Nothing of what
-        has so few members that all are told.
+        has so few members that all are told, nor of the context, of which texts on all of Blender speak.
         """
-        if not self.reader.entry(owner) or self._own(owner):
+        if not self.reader.entry(owner) or self._own(owner) or owner == _CONTEXT:
             return []
         lineage = {owner, *(ancestor.path for ancestor in self.reader.lineage(owner))}
         missing = MissingName(name, owner, assigned=assigned)
@@ -315,6 +315,17 @@ class KnownNames:
             f"{owner}:{name}", f"{message} in Blender {self.version}.{told}", tuple(similar),
             misspelt[0] if len(misspelt) == 1 else "",
         )  # fmt: skip
+
+    def _alike_members(self, owner: str, name: str, names: Sequence[str]) -> list[str]:
+        """The members that a name is most like; of those of a class that are as like it, what counts most:
+        ``selected_objects`` for ``selected``.
+        """
+        if not owner.startswith(TYPES):
+            return self._alike(name, names)
+        found = nearest(name, names, len(names))
+        weights = self.reader.weights([self._path_of(owner, one) for one, _ in found])
+        found.sort(key=lambda row: (-row[1], -weights.get(self._path_of(owner, row[0]), 0.0)))
+        return [one for one, _ in found[:_MOST_NAMED]]
 
     @staticmethod
     def _alike(name: str, names: Iterable[str]) -> list[str]:

@@ -11,13 +11,13 @@ from kb_build.index.analysis import key, terms
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.lines import taken_text
 from kb_build.symbols.paths import argument_of, plain_path
-from kb_serve.recognise.names.likely_values import explaining, same_elsewhere
+from kb_build.symbols.records import EnumItem
+from kb_serve.recognise.names.likely_values import explaining, labelled_items, likely_items, same_elsewhere
 from kb_serve.recognise.recognition import WHOLE_LABEL
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from kb_build.symbols.records import EnumItem
     from kb_build.symbols.taken import Taken
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
@@ -176,16 +176,13 @@ class EnumValues:
         return next((item.where for item in self._items(owner) if item.identifier == value), None)
 
     def labelled(self, owner: str, value: str) -> list[str]:
-        """The item whose label a value is, NEGATIVE_Z of ``-Z``; else those whose labels have all its words, those
-        with the fewest others first: SUBSURF, which is labelled Subdivision Surface, of ``SUBDIVISION``.
-        """
-        items = self._items(owner)
-        if exact := [item.identifier for item in items if item.name.casefold() == value.casefold()]:
-            return exact
-        said = set(terms(value))
-        labels = {item.identifier: set(terms(item.name)) for item in items}
-        having = [identifier for identifier, label in labels.items() if said and said <= label]
-        return sorted(having, key=lambda identifier: len(labels[identifier]))
+        """The items of an enumeration whose labels say a value; see :func:`likely_values.labelled_items`."""
+        return labelled_items(value, self._items(owner))
+
+    def likely(self, owner: str, value: str, values: Iterable[str]) -> list[str]:
+        """Which of ``values``, that an enumeration takes, may be meant by one that it lacks."""
+        items = {item.identifier: item for item in self._items(owner)}
+        return likely_items(value, [items.get(one) or EnumItem(one) for one in values], self._reader)
 
     def explaining(self, owner: str, value: str) -> list[str]:
         """The item that says what things called as a value are, if there is one."""

@@ -83,14 +83,35 @@ def value_there(written: object, items: Sequence[str]) -> str:
 
 
 def likely_items(written: str, items: Sequence[EnumItem], reader: BaseReader) -> list[str]:
-    """The same of items with their labels: where none is alike, the one that is labelled so, ``DEL`` for ``DELETE``, or
-    else what Blender says that things called so are.
+    """The same of items with their labels: the one that is labelled so, ``SUBSURF`` for ``SUBDIVISION_SURFACE``; where
+    none is alike, the few whose labels say it and more, or else what Blender says that things called so are.
     """
+    if exact := [item.identifier for item in items if is_labelled(item, written)]:
+        return exact
+    saying_more = labelled_items(written, items)
     return (
         likely_values(written, [item.identifier for item in items])
-        or [item.identifier for item in items if key(item.name) == key(written)]
+        or (saying_more if len(saying_more) <= _MOST else [])
         or explaining(written, items, reader)
     )
+
+
+def is_labelled(item: EnumItem, written: str) -> bool:
+    """Whether an item is shown as what is written, ``NEGATIVE_Z`` of ``-Z``."""
+    return item.name.casefold() == written.replace("_", " ").casefold()
+
+
+def labelled_items(written: str, items: Iterable[EnumItem]) -> list[str]:
+    """The items that are labelled as what is written; else those whose labels have all its words, those with the
+    fewest others first: SUBSURF, which is labelled Subdivision Surface, of ``SUBDIVISION``.
+    """
+    items = list(items)
+    if exact := [item.identifier for item in items if is_labelled(item, written)]:
+        return exact
+    said = set(terms(written))
+    labels = {item.identifier: set(terms(item.name)) for item in items}
+    having = [identifier for identifier, label in labels.items() if said and said <= label]
+    return sorted(having, key=lambda identifier: len(labels[identifier]))
 
 
 def explaining(written: str, items: Iterable[EnumItem], reader: BaseReader) -> list[str]:

@@ -103,6 +103,23 @@ def test_what_may_be_meant_is_told(checker: Checker, code: str, told: str) -> No
 
 
 @pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        ("bpy.context.selected", " Closest: `selected_objects`, `selected_nodes`, `selected_strips`."),
+        ("bpy.ops.armature.bone_add()", " Closest: `armature.bone_primitive_add`."),
+        ("bpy.context.object.modifiers.new('x', 'SUBDIVISION_SURFACE')", " Closest: `SUBSURF`."),
+        ("bpy.context.object.modifiers.new('x', 'SUBDIVISION')", " Closest: `SUBSURF`."),
+        ("bpy.context.object.constraints.new('INVERSE_KINEMATICS')", " Closest: `IK`."),
+    ],
+)
+def test_what_counts_most_and_what_is_labelled_so_is_told_once(
+    checker: Checker, code: str, told: str
+) -> None:
+    (found,) = checker.check(f"import bpy\n{code}\n")
+    assert found.message.endswith(told)
+
+
+@pytest.mark.parametrize(
     ("code", "meant", "not_meant"),
     [
         ("bpy.ops.wm.fbx_export(filepath='x')", "export_scene.fbx", "fbx_import"),

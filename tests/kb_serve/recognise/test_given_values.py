@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     [
         ("obj.display_type = 'WIREFRAME'", "Closest: `'WIRE'`"),
         ("km.keymap_items.new('object.delete', 'DELETE', 'PRESS')", "Closest: `'DEL'`."),  # labelled so
+        ("ob.modifiers.new('x', 'SUBDIVISION_SURFACE')", "Closest: `'SUBSURF'`."),
+        ("ob.constraints.new('INVERSE_KINEMATICS')", "Closest: `'IK'`."),
         # What is refused a second time only, or in a mode, is taken.
         ("fcurve.modifiers.new(type='CYCLE')", "Closest: `'CYCLES'`."),
         ("obj.modifiers.new('c', 'CLOTHS')", "Closest: `'CLOTH'`."),
