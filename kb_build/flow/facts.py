@@ -70,6 +70,9 @@ LOST_MODULES = {
 # took their place is no mere new name.
 SAME_TYPE = {
     f"{T}Scene.node_tree": f"{T}Scene.compositing_node_group",
+    f"{T}SceneObjects.active": f"{T}LayerObjects.active",
+    f"{T}Action.fcurves": f"{T}ActionChannelbag.fcurves",
+    f"{T}Action.groups": f"{T}ActionChannelbag.groups",
     f"{T}CompositorNodeOutputFile.file_slots": f"{T}CompositorNodeOutputFile.file_output_items",
     f"{T}CompositorNodeOutputFile.layer_slots": f"{T}CompositorNodeOutputFile.file_output_items",
 }

@@ -272,7 +272,7 @@ class Members(Core):
             return
         if not _is_pythons(name):
             found.missing.append(kind.path or kind.container)
-        found.types.append(UNKNOWN)
+        found.types.append(self._held(self.api.successor_type(kind.container, name), kind, name))
 
     def _of_module(self, kind: Module, name: str, found: Lookup) -> None:
         member = self.api.member(kind.path, name)

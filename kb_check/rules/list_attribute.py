@@ -8,6 +8,7 @@ obj.driver_add("location", 0).driver
 bpy.app.handlers.load_post.add(follow)  # reported: append
 bpy.context.selected_objects.location  # reported: each of them has one
 quaternion.to_axis_angle().x  # reported: a tuple of the axis and the angle
+obj.children.append(child)  # reported: a tuple, which nothing is added to
 ```
 
 Not reported: what stands in a ``try`` that catches AttributeError, and names that the script asks for by a text.
@@ -27,6 +28,7 @@ from kb_check.running.tried import is_tried
 from kb_check.syntax.bindings import once_bound
 from kb_check.syntax.words import words_in_texts
 from kb_check.values.misfits import describe
+from kb_serve.recognise.names.elements import elsewhere
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -39,9 +41,9 @@ _LONGEST = 60  # expression that is shown
 
 def _check(script: Script) -> Iterator[Finding]:
     for node in script.all(ast.Attribute):
-        if hasattr(list, node.attr):
+        if hasattr(tuple, node.attr):
             continue
-        if name := handler_list(script, node.value):
+        if not hasattr(list, node.attr) and (name := handler_list(script, node.value)):
             yield Finding(
                 RULE.id, "error", script.name_span(node),
                 f"`{name}` is a list, which has no `{node.attr}`: `append` adds a function, `remove` takes one out.",
@@ -59,7 +61,7 @@ def _told(script: Script, node: ast.Attribute) -> str:
     kinds = [kind for kind in members(script.type_of(node.value) or UNKNOWN) if kind != NONE]
     if row is None or not row.sure or row.guarded or row.possible or len(kinds) != 1:
         return ""
-    if node.attr in words_in_texts(script):
+    if node.attr in words_in_texts(script) or _has(kinds[0], node.attr):
         return ""
     match kinds[0]:
         case Sequence(kind="list", element=Instance()) if row.value == _ADDING:
@@ -68,13 +70,20 @@ def _told(script: Script, node: ast.Attribute) -> str:
                 "give an index, `driver_add(path, index)`, or take one of the list."
             )
         case Sequence(kind="list" | "tuple" as several, element=element):
-            advice = _advice(script, element, node.attr)
+            other = elsewhere(row.symbols[0], node.attr, script.names.reader) if row.symbols else None
+            advice = f" {other.how}" if other else _advice(script, element, node.attr)
             return f"`{_short(source)}` is a {several}, which has no `{node.attr}`.{advice}"
         case Tuple(items=items):
             held = ", ".join(describe(item) or "something else" for item in items)
             return f"`{_short(source)}` is a tuple, which has no `{node.attr}`. It holds {held}."
         case _:
             return ""
+
+
+def _has(kind: Type, name: str) -> bool:
+    """Whether Python's class of several things has an attribute: a tuple surely has not what only lists have."""
+    is_tuple = isinstance(kind, Sequence) and kind.kind == "tuple"
+    return hasattr(tuple if is_tuple else list, name)
 
 
 def _advice(script: Script, element: Type, name: str) -> str:

@@ -96,6 +96,10 @@ _DESELECTED = Elsewhere(
 )
 # Collection → where elements are added.
 ADDED_BY = {
+    f"{T}Object.children": Elsewhere(
+        f"{T}Object.parent", "A child is given its parent: `child.parent = obj`."
+    ),
+    f"{T}Object.users_collection": _TO_COLLECTION,
     f"{T}LayerObjects.selected": _SELECTED,
     f"{T}PointCloud.points": Elsewhere(
         f"{T}PointCloud.resize",
@@ -150,6 +154,10 @@ ADDED_BY = {
 }
 # Collection → where elements are removed.
 REMOVED_BY = {
+    f"{T}Object.children": Elsewhere(f"{T}Object.parent", "A child loses its parent: `child.parent = None`."),
+    f"{T}Object.users_collection": Elsewhere(
+        f"{T}CollectionObjects.unlink", "A collection lets go of an object: `collection.objects.unlink(obj)`."
+    ),
     f"{T}LayerObjects.selected": _DESELECTED,
     f"{T}Object.material_slots": Elsewhere(
         f"{T}IDMaterials.pop",

@@ -89,3 +89,25 @@ def test_properties_that_a_package_registers_may_have_any_value(rule_checker: Ch
         package.add(read.analysis)
     assert [one.rule for one in rule_checker.check(reads["addon/use.py"], package)] == []
     assert len(rule_checker.check(f"import bpy\n{use}", rules=["unknown-value"])) == 1
+
+
+_TUPLES = """\
+import bpy
+cube = bpy.data.objects['Cube']
+cube.children.append(bpy.data.objects['Light'])
+cube.users_collection.remove(bpy.data.collections[0])
+cube.children.index(cube) if cube.children else 0
+children = [*cube.children]
+children.append(cube)
+"""
+
+
+def test_what_a_tuple_is_not_added_to_is_told(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = _TUPLES.splitlines()
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
+    found = rule_checker.check(_TUPLES)
+    assert [one.span.line for one in found] == refused == [3, 4]
+    assert [one.message.partition(". ")[2] for one in found] == [
+        "A child is given its parent: `child.parent = obj`.",
+        "A collection lets go of an object: `collection.objects.unlink(obj)`.",
+    ]

@@ -137,6 +137,22 @@ node = tree.nodes.new('CompositorNodeOutputFile')
     ]
 
 
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        ("ob = bpy.context.scene.objects.active\nob.show_x_ray = True", "bpy.types.Object.show_x_ray"),
+        ("for curve in action.fcurves:\n    curve.keyframe_pionts", "bpy.types.FCurve.keyframe_pionts"),
+        ("action.fcurves.new('x', action_group='x')", "bpy.types.ActionFCurves.new(action_group)"),
+        ("action.groups[0].colour_set = 'THEME01'", "bpy.types.ActionGroup.colour_set"),
+    ],
+)
+def test_what_is_read_from_a_lost_name_has_the_type_that_it_had(
+    rule_checker: Checker, code: str, told: str
+) -> None:
+    found = rule_checker.check(f"import bpy\naction = bpy.data.actions.new('x')\n{code}\n")
+    assert [one.symbol for one in found][1:] == [told]
+
+
 def test_an_operator_is_fixed_with_its_keywords(rule_checker: Checker) -> None:
     code = "bpy.ops.export_scene.obj(filepath='/tmp/x.obj', use_selection=True)"
     assert _sure(rule_checker, code) == [["wm.obj_export"], ["export_selected_objects"]]

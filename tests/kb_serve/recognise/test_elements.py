@@ -50,6 +50,8 @@ _ADDED = {
         1,
     ),
     "DriverVariable.targets": ("variable.targets", "variable.type = 'LOC_DIFF'", 1),
+    "Object.children": ("ob.children", "other.parent = ob", 1),
+    "Object.users_collection": ("new.users_collection", "bpy.context.collection.objects.link(new)", 1),
     "Object.material_slots": ("ob.material_slots", "ob.data.materials.append(material)", 1),
     "Key.key_blocks": ("mesh.shape_keys.key_blocks", 'ob.shape_key_add(name="Key")', 1),
     "BlendData.shape_keys": ("bpy.data.shape_keys", 'other.shape_key_add(name="Key")', 1),
@@ -88,6 +90,12 @@ _LOST = (
 )
 _REMOVED = {
     "LayerObjects.selected": ("bpy.context.view_layer.objects.selected", "ob.select_set(False)", -1),
+    "Object.children": ("weighted.children", "dusty.parent = None", -1),
+    "Object.users_collection": (
+        "other.users_collection",
+        "bpy.context.collection.objects.unlink(other)",
+        -1,
+    ),
     "Object.material_slots": ("ob.material_slots", "remove_slots()", -1),
     "Key.key_blocks": (
         "mesh.shape_keys.key_blocks",
@@ -187,6 +195,7 @@ for collection, change in json.load(open(sys.argv[-1])):
         made.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
         return made
     other, dusty, weighted = (linked(name, triangle()) for name in ("Other", "Dusty", "Weighted"))
+    dusty.parent = weighted
     psys = dusty.modifiers.new("Dust", "PARTICLE_SYSTEM").particle_system
     psys.settings.physics_type = "BOIDS"
     bpy.context.view_layer.objects.active = ob
