@@ -386,7 +386,7 @@ ADVICE: tuple[Advice, ...] = (
         wherever=(
             stems("animate keyframe keyframes"),
             stems("material node shader socket"),
-            stems("color colour emission roughness strength"),
+            stems("color colour emission roughness strength value"),
         ),
     ),
     Advice(

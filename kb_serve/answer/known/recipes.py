@@ -57,6 +57,39 @@ _BY_TYPE = (
     '`next(n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeBsdfPrincipled")`; `n.type` of it is '
     "'BSDF_PRINCIPLED'."
 )
+_CHOSEN = (
+    "`bpy.context.selected_objects` is a list of them, `bpy.context.view_layer.objects.selected` has the same: "
+    "`for ob in bpy.context.selected_objects: print(ob.name)`."
+)
+_OWN = (
+    '`ob["speed"] = 1.0` gives an object a custom property, and so with a scene, a material or any other data-block: '
+    'the file keeps it. `ob.get("speed", 0.0)` reads one that may be missing. One that all have, with a default, is '
+    "declared: `bpy.types.Object.speed = bpy.props.FloatProperty()`, then `ob.speed`."
+)
+_IN_SIDEBAR = (
+    "A panel in the sidebar (N) of the 3D viewport: `class MINE_PT_panel(bpy.types.Panel):` with "
+    "`bl_label = \"Mine\"`, `bl_space_type = 'VIEW_3D'`, `bl_region_type = 'UI'`, `bl_category = \"My Tab\"` and "
+    '`def draw(self, context): self.layout.operator("object.delete")`, where a button calls an operator; '
+    "`bpy.utils.register_class(MINE_PT_panel)` shows it."
+)
+_SEEN_THROUGH = (
+    'What is seen through it is up to its shader: `bsdf.inputs["Alpha"].default_value = 0.3`, of the Principled BSDF. '
+    "EEVEE dithers that, unless `material.surface_render_method = 'BLENDED'`."
+)
+_LIT = (
+    "A picture around the scene: `nodes, links = world.node_tree.nodes, world.node_tree.links`, "
+    '`environment = nodes.new("ShaderNodeTexEnvironment")`, `environment.image = bpy.data.images.load(path)`, '
+    '`links.new(environment.outputs["Color"], nodes["Background"].inputs["Color"])`.'
+)
+_DRAWN = (
+    '`drawing = pencil.layers.new("Lines").frames.new(1).drawing`, of the object\'s data, `drawing.add_strokes([4])` '
+    "makes a stroke of four points, `drawing.strokes[0].points[0].position = (0, 0, 1)` and so on places them."
+)
+_ORIGIN = (
+    "`bpy.ops.object.origin_set(type='ORIGIN_GEOMETRY')` brings the origins of the selected objects into their middle, "
+    "with 'ORIGIN_CURSOR' to the 3D cursor. Without an operator, to `place` in the object's own space: "
+    "`ob.data.transform(Matrix.Translation(-place))`, `ob.matrix_world.translation = ob.matrix_world @ place`."
+)
 
 _OBJECTS = stems("object objects")
 _NODES = stems("geometry modifier node nodes")
@@ -139,5 +172,72 @@ RECIPES: tuple[Advice, ...] = (
     ),
     Advice(
         _BY_TYPE, wherever=(stems("find get look"), stems("node"), stems("type")), unless=stems("geometry")
+    ),
+    Advice(
+        _CHOSEN,
+        wherever=(stems("get iterate list loop"), stems("selected"), _OBJECTS),
+        unless=stems(
+            "bake bone editable export face import join keyframe material parent strip vertex vertices"
+        ),
+    ),
+    Advice(
+        _OWN,
+        wherever=(
+            stems("add assign create define keep save set store"),
+            stems("custom own"),
+            stems("data properties property values variable"),
+        ),
+        unless=stems(
+            "animate attribute bone class collection description driver edit enum export group handler icon keyframe "
+            "keying layer limit list max menu mesh min node normal normals operator panel precision range slider soft "
+            "step structure subtype template test tooltip types ui unit update"
+        ),
+    ),
+    Advice(
+        _IN_SIDEBAR,
+        wherever=(stems("sidebar"), stems("add button create make new panel put register script")),
+        unless=stems("category hide image node open sequencer show toggle width"),
+    ),
+    Advice(
+        _SEEN_THROUGH,
+        wherever=(stems("material materials shader"), stems("transparent transparency")),
+        unless=stems(
+            "backface background bake cutout film freestyle glass gpencil image layers light line mix node outline "
+            "pencil png refractive shadow shadows showing texture vertex viewport wireframe wrapper"
+        ),
+        since=(4, 2),
+    ),
+    Advice(
+        _LIT,
+        wherever=(
+            stems("environment hdr hdri"),
+            stems("add background light lighting load set setup use world"),
+        ),
+        unless=stems(
+            "bake camera coordinates dim export flat format generated group hide intensity keep lookdev noisy output "
+            "pass path portal preview projection rotate rotation save strength studio switch turn viewport visible"
+        ),
+        since=(5, 0),
+    ),
+    Advice(
+        _DRAWN,
+        wherever=(
+            stems("gpencil grease pencil"),
+            stems("stroke strokes"),
+            stems("add create draw make new python script"),
+        ),
+        unless=stems(
+            "annotation attribute bezier brush curve delete fill material modifier remove select weight"
+        ),
+        since=(4, 3),
+    ),
+    Advice(
+        _ORIGIN,
+        wherever=(
+            stems("origin"),
+            stems("center centre change move set"),
+            stems("geometry mesh object objects"),
+        ),
+        unless=stems("applied bone collection instance modifiers node pivot text tracking uv world"),
     ),
 )

@@ -12,6 +12,7 @@ from kb_serve.answer.known.recipes import RECIPES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
+    from pathlib import Path
 
     from kb_serve.knowledge_base import KnowledgeBase
 
@@ -189,6 +190,70 @@ def test_a_node_is_found_by_its_type(kb: KnowledgeBase) -> None:
     assert (found.name, found.type) == ("other", "BSDF_PRINCIPLED")
 
 
+def test_the_selected_objects_are_listed(kb: KnowledgeBase) -> None:
+    cube().select_set(True)
+    text = told(kb, "how do I get all selected objects")
+    assert value(text, bpy=bpy) == [cube()] == list(eval(CODE.findall(text)[1], {"bpy": bpy}))
+    run(text)
+
+
+@pytest.mark.parametrize(
+    "question",
+    [
+        "how do I add a custom property to an object",
+        "store custom data in the scene that is saved in the file",
+    ],
+)
+def test_anything_takes_properties_of_its_own(question: str, kb: KnowledgeBase) -> None:
+    run(told(kb, question), ob=cube())
+    assert (cube()["speed"], cube().speed) == (1.0, 0.0)
+    del bpy.types.Object.speed
+
+
+def test_a_panel_is_put_into_the_sidebar(kb: KnowledgeBase) -> None:
+    head, *lines, register = CODE.findall(told(kb, "how do I add a button to the sidebar"))
+    held: dict[str, Any] = {"bpy": bpy}
+    exec("\n    ".join((head, *lines)), held)
+    exec(register, held)
+    assert bpy.types.MINE_PT_panel.bl_category == "My Tab"
+    bpy.utils.unregister_class(held["MINE_PT_panel"])
+
+
+def test_a_material_is_seen_through(kb: KnowledgeBase) -> None:
+    material = bpy.data.materials["Material"]
+    bsdf = material.node_tree.nodes["Principled BSDF"]
+    run(told(kb, "how to make a material transparent in eevee"), material=material, bsdf=bsdf)
+    assert bsdf.inputs["Alpha"].default_value == pytest.approx(0.3)
+    assert (material.surface_render_method, material.blend_method) == ("BLENDED", "BLEND")
+
+
+def test_a_picture_lights_the_world(kb: KnowledgeBase, tmp_path: Path) -> None:
+    image, world = bpy.data.images.new("sky", 8, 4), bpy.data.worlds.new("new")
+    image.filepath_raw, image.file_format = str(tmp_path / "sky.png"), "PNG"
+    image.save()
+    environment = run(told(kb, "how do I load an HDRI as environment"), world=world, path=image.filepath_raw)[
+        "environment"
+    ]
+    assert environment.image.size[:] == (8, 4)
+    assert environment.outputs["Color"].links[0].to_node.name == "Background"
+
+
+def test_a_stroke_is_drawn(kb: KnowledgeBase) -> None:
+    pencil = bpy.data.grease_pencils.new("pencil")
+    drawing = run(told(kb, "grease pencil add stroke python"), pencil=pencil)["drawing"]
+    assert [len(stroke.points) for stroke in drawing.strokes] == [4]
+    assert tuple(drawing.strokes[0].points[0].position) == (0, 0, 1)
+
+
+def test_an_origin_moves_and_what_is_seen_stays(kb: KnowledgeBase) -> None:
+    ob, place = cube(), Vector((1, 1, 0))
+    ob.scale, ob.rotation_euler.z = (1, 2, 3), 0.5
+    before = corners(ob)
+    run(told(kb, "how to change the origin of an object"), 0, ob=ob, place=place)
+    assert corners(ob) == pytest.approx(before, abs=1e-5)
+    assert tuple(ob.data.vertices[0].co) == pytest.approx((0, 0, 1))
+
+
 @pytest.mark.parametrize(
     "question",
     [
@@ -200,6 +265,13 @@ def test_a_node_is_found_by_its_type(kb: KnowledgeBase) -> None:
         "limit distance between objects constraint",
         "make the camera look at an empty with track to",
         "camera keeps looking at a cube, script",
+        "how to select all objects",
+        "add a custom property to a panel",
+        "toggle the sidebar",
+        "transparent background png",
+        "hide the hdri in the viewport",
+        "remove grease pencil strokes",
+        "origin of a text object",
     ],
 )
 def test_a_question_of_something_else_is_told_none(question: str, kb: KnowledgeBase) -> None:
