@@ -229,7 +229,10 @@ class KnownNames:
             similar = [one for one, _ in nearest(name, methods, _MOST_NAMED)] or methods
         elif not (misspelt or of_kinds):
             labels = self._labels(owner) if owner.startswith(TYPES) else {}
-            similar = _likely(name, self._meant(owner, name, assigned=assigned), similar, labels)
+            meant = self._meant(owner, name, assigned=assigned)
+            # A class is called by what it is of first: what begins alike is meant rather than what says the same.
+            meant = [*similar, *meant] if f"{owner}." == TYPES else meant
+            similar = _likely(name, meant, similar, labels)
         if switches := [one for one in _switches(name, names) if one not in similar]:
             similar, misspelt = [*switches, *similar][:_MOST_NAMED], [*switches, *misspelt]
         span = "" if self._lookup.paths_below(owner, name) else self._notes.never(owner, name)

@@ -207,10 +207,13 @@ def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
     extra = arguments[len(callee.positional)]
     by_name = {parameter.name: parameter for parameter in callee.parameters}
     rest = [name for name in callee.keyword_only if name not in call.given]
+    gone = script.names.changed_parameters(path)
     if not rest:
         count = len(callee.positional)
         takes = "no arguments" if not callee.parameters else f"{counted(count, 'argument')} by place"
         advice = " Its numbers are one sequence." if callee.symbol.kind == "class" else ""
+        # As many as are too many are what is given.
+        advice += "".join(f" {one.message}" for one in gone if len(gone) == len(arguments) - count)
         yield Finding(
             RULE.id, "error", script.span(extra),
             f"`{path}` takes {takes}: `{callee.symbol.signature}`.{advice}", path,
@@ -218,7 +221,7 @@ def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
         return
     # RNA's functions took all by place once: the order is that of the parameters, unless some are gone.
     parameter = by_name[rest[0]] if callee.is_rna and len(arguments) == len(callee.positional) + 1 else None
-    gone = script.names.changed_parameters(path) if callee.is_rna else ()
+    gone = gone if callee.is_rna else ()
     if gone or (parameter and _takes_other_things(script, call, parameter, extra)):
         parameter = None
     yield Finding(

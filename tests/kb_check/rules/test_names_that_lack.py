@@ -107,6 +107,12 @@ def test_what_may_be_meant_is_told(checker: Checker, code: str, told: str) -> No
     [
         ("bpy.context.selected", " Closest: `selected_objects`, `selected_nodes`, `selected_strips`."),
         ("bpy.ops.armature.bone_add()", " Closest: `armature.bone_primitive_add`."),
+        (
+            "bpy.types.NodeSocketInteger",
+            " Closest: `NodeSocketInt`, `NodeSocketImage`, `NodeSocketIntFactor`.",
+        ),
+        ("import blf\nblf.size(0, 20, 72)", "Use `blf.size(size=…)`. Scale the size by dpi / 72 yourself."),
+        ("import blf\nblf.size(0, 20, 72, 1)", "takes 2 arguments by place: `size(fontid, size, /)`."),
         ("bpy.context.object.modifiers.new('x', 'SUBDIVISION_SURFACE')", " Closest: `SUBSURF`."),
         ("bpy.context.object.modifiers.new('x', 'SUBDIVISION')", " Closest: `SUBSURF`."),
         ("bpy.context.object.constraints.new('INVERSE_KINEMATICS')", " Closest: `IK`."),
