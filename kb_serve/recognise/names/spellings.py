@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
-    from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
+    from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 
 _MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
 _FEW = 3
@@ -30,6 +30,20 @@ _LABEL_WITHIN = (
     0.79  # how sure what a part of a question is called is: it comes after the first that the words find
 )
 _OF_A_LABEL = 2
+# Words of a question about what other versions had.
+_OF_A_CHANGE = frozenset(
+    {
+        "deprecated",
+        "disappeared",
+        "gone",
+        "instead",
+        "removed",
+        "renamed",
+        "replaced",
+        "replacement",
+        "replaces",
+    }
+)
 _KINDS = frozenset({"modifier", "constraint"})  # last words of labels, which may stand anywhere in a question
 _USUAL, _BESIDE_USUAL = 0.98, 0.97  # … the class that plain words usually mean, and what is spelled so
 _OTHERWISE = 0.85  # how sure a name is that shares only its key with the query
@@ -94,6 +108,7 @@ class Spellings:
         if " " in text:
             self._labelled(text, recognition)
             self._labels_within(text.split(), recognition)
+            self._lost_within(text.lower().split(), recognition)
         rows = self._reader.by_key(key(called))
         if rows:
             self._spelled(called, rows, recognition)
@@ -208,6 +223,34 @@ class Spellings:
             sure = WHOLE_LABEL if is_typed else _LABEL_WITHIN
             for rank, entry in enumerate(self._reader.heaviest(classes)[:_OF_A_LABEL]):
                 recognition.add(entry.path, sure - 0.01 * rank, "label")
+
+    def _lost_within(self, words: Sequence[str], recognition: Recognition) -> None:
+        """Adds what the words of a question about a change name that other versions alone have: ``what replaced face
+        maps``.
+        """
+        if len(words) > _MOST_WORDS or _OF_A_CHANGE.isdisjoint(words):
+            return
+        for length in _LABEL_WORDS:
+            parts = (words[start : start + length] for start in range(len(words) - length + 1))
+            names = ["_".join(part) for part in parts if _OF_A_CHANGE.isdisjoint(part)]
+            lost = [removed for name in names for removed in self._lost(name)]
+            for removed in lost:
+                recognition.add_removed(removed)
+            if lost:
+                return
+
+    def _lost(self, name: str) -> list[RemovedSymbol]:
+        """What other versions alone have by a name of several words, as a path or as a member of some class."""
+        if self._reader.by_key(key(name)):
+            return []
+        return [*self._removed.spelled(name)] or self._lost_members(name)
+
+    def _lost_members(self, name: str) -> list[RemovedSymbol]:
+        """The member of that name, of which it is known what took its place, of the class that counts most."""
+        paths = [path for path in self._removed.paths_named(name) if self._reader.successors(path)]
+        weights = self._reader.weights({path.rpartition(".")[0] for path in paths})
+        paths.sort(key=lambda path: -weights.get(path.rpartition(".")[0], 0.0))
+        return [*filter(None, map(self._removed.of_path, paths[:1]))]
 
     def _is_enum_item(self, text: str) -> bool:
         return "_" in text and is_value(text, self._reader)

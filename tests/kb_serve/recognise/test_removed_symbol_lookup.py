@@ -121,3 +121,26 @@ def test_a_lost_value_of_an_argument_is_replaced(kb: KnowledgeBase, query: str, 
 
 def test_a_value_that_is_taken_is_not_lost(kb: KnowledgeBase) -> None:
     assert kb.query("icon='MESH_CUBE'").notes == ()
+
+
+@pytest.mark.parametrize(
+    ("query", "gone"),
+    [
+        ("what replaced bone layers", "bpy.types.Bone.layers"),
+        ("scene node tree removed in 5", "bpy.types.Scene.node_tree"),
+        ("use auto smooth gone", "bpy.types.Mesh.use_auto_smooth"),  # of some class, which is not named
+        ("dupli group renamed", "bpy.types.Object.dupli_group"),
+        ("scene update pre replacement", "bpy.app.handlers.scene_update_pre"),  # and not scene.update
+    ],
+)
+def test_the_words_of_a_question_about_a_change_are_a_name(kb: KnowledgeBase, query: str, gone: str) -> None:
+    told = [note for note in kb.query(query).notes if "does not exist" in note]
+    assert [note.startswith(f"`{gone}` ") for note in told] == [True]
+
+
+@pytest.mark.parametrize(
+    "query",
+    ["use auto smooth", "vertex colors removed", "where are the faces removed by boolean", "bone layers"],
+)
+def test_what_is_there_and_what_is_no_change_is_not_gone(kb: KnowledgeBase, query: str) -> None:
+    assert not any("does not exist" in note for note in kb.query(query).notes)
