@@ -10,6 +10,9 @@ bm.verts.ensure_lookup_table()  # reported
 bm = bmesh.from_edit_mesh(mesh)
 bpy.ops.object.mode_set(mode="OBJECT")
 bm.verts  # reported: it goes with Edit Mode
+vert = bm.verts[0]
+layer = bm.verts.layers.float.new("weight")
+vert[layer] = 1  # reported: a layer is made before elements are taken
 instances = list(depsgraph.object_instances)
 instances[0].object  # reported: [i.object.original for i in depsgraph.object_instances]
 ```
@@ -38,7 +41,7 @@ from kb_check.rule import Rule
 from kb_check.running.out_of_sight import computes_names
 from kb_check.running.tried import is_tried
 from kb_check.scene.held_objects import JOIN, HeldObjects
-from kb_check.scene.removed import Removal, Removed, may_remove
+from kb_check.scene.removed import NEW_LAYER, Removal, Removed, may_remove
 from kb_check.script import once_per_script
 from kb_check.syntax.bodies import bodies
 from kb_check.syntax.literals import times_bound
@@ -81,11 +84,18 @@ def _used(script: Script, statement: ast.stmt, removed: Removed) -> Iterator[Fin
             if not is_tried(script, name):
                 del removed.gone[name.id]  # once is enough
                 yield Finding(
-                    RULE.id, "error", script.span(name),
-                    f"`{name.id}` is gone: `{removal.path}` removed it in line {removal.line}. Take what is needed "
-                    "of it before.",
+                    RULE.id,
+                    "error",
+                    script.span(name),
+                    f"`{name.id}` is gone: {_told(removal)}",
                     removal.path,
-                )  # fmt: skip
+                )
+
+
+def _told(removal: Removal) -> str:
+    if removal.path == NEW_LAYER:
+        return f"the layer that is made in line {removal.line} lays such elements anew. Make it before one is taken."
+    return f"`{removal.path}` removed it in line {removal.line}. Take what is needed of it before."
 
 
 def _names_used(script: Script, node: ast.AST) -> Iterator[ast.Name]:

@@ -9,6 +9,7 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.flow.facts import ELEMENTS, LAYERS
 from kb_build.flow.types import Collection, Instance
 from kb_build.symbols.api_names import ID
 from kb_build.symbols.api_names import TYPES as T
@@ -33,7 +34,9 @@ OUTSIDE_MAIN = {
     f"{T}Object.to_curve": f"{T}Object.to_curve_clear",
 }
 _CLEARING = frozenset(OUTSIDE_MAIN.values())
-_NAMES = ("remove", "free", "clear", "from_edit_mesh")
+_NAMES = ("remove", "free", "clear", "from_edit_mesh", "layers")
+# What lays all elements of its kind anew, so that what names hold of them is gone.
+NEW_LAYER = f"{LAYERS}.new"
 _TAKING = frozenset({"new", "get", "add"})
 # What belongs to Edit Mode, and goes when that is left.
 _OF_EDIT_MODE, _EDIT_MODE = "bmesh.from_edit_mesh", "Edit Mode"
@@ -68,6 +71,11 @@ class Removed:
             for place in self._places.pop(name, ()):
                 self._forget(place)
         match statement:
+            case ast.Expr(value=ast.Call() as call) | ast.Assign(value=ast.Call() as call):
+                self._lay_anew(call)
+            case _:
+                pass
+        match statement:
             case ast.Expr(value=ast.Call() as call):
                 self._remove(call)
             case ast.Assign(targets=[ast.Attribute(attr="active")]):
@@ -95,6 +103,15 @@ class Removed:
         elif removes_argument(symbol, is_rna=site.callee.is_rna) and not site.has_unpacking:
             given = next((node for parameter, node in site.arguments() if parameter.required), None)
             self._lose(given, removal)
+
+    def _lay_anew(self, call: ast.Call) -> None:
+        match call.func:
+            case ast.Attribute(value=ast.Attribute(value=ast.Attribute(value=elements, attr="layers"))) if (
+                callee_path(self.script, call) == NEW_LAYER
+            ):
+                self._lose_held(ast.unparse(elements), Removal(NEW_LAYER, call.lineno))
+            case _:
+                pass
 
     def lose(self, names: Iterable[str], removal: Removal) -> None:
         """Takes down that what names hold was removed."""
@@ -138,6 +155,8 @@ class Removed:
     def _owns_items(self, node: ast.expr) -> bool:
         """Whether something is a collection of parts, which go with it, and not of data-blocks, which stay."""
         kind = self.script.type_of(node)
+        if isinstance(kind, Instance) and kind.cls in ELEMENTS:
+            return True
         element = kind.element if isinstance(kind, Collection) else None
         if not isinstance(element, Instance) or not element.cls.startswith(T):
             return False

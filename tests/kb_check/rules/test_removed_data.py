@@ -40,6 +40,8 @@ _WRONG = {
     "bmesh": "bm.free()\nbm.verts",
     "bmesh given": "bm.free()\nbmesh.ops.create_cube(bm)",
     "element": "bm.verts.remove(vert)\nvert.co",
+    "element behind a layer": "layer = bm.verts.layers.float.new('x')\nvert[layer] = 1",
+    "element of an item": "bm.verts.ensure_lookup_table()\nvert = bm.verts[0]\nbm.verts.layers.int.new('x')\nvert.co",
     "shape key": "key = ob.shape_key_add(name='k')\nob.shape_key_remove(key)\nkey.name",
     "list of instances": "kept = list(depsgraph.object_instances)\nkept[0].object",
     "comprehension": "kept = [i for i in depsgraph.object_instances]\nkept[0].matrix_world",
@@ -75,6 +77,9 @@ _OF_FREE_MEMORY = [
     "layer = me.uv_layers.new(name='a')\nme.uv_layers.remove(layer)\nlayer.data",
 ]
 _SOUND = {
+    "layer of other elements": "bm.edges.layers.float.new('x')\nbm.loops.layers.uv.new('x')\nvert.co",
+    "layer that is there": "bm.verts.layers.float.get('x')\nvert.co",
+    "element behind its layer": "layer = bm.verts.layers.float.new('x')\nvert = bm.verts.new()\nvert[layer] = 1",
     "read before": f"name = ob.name\n{_GONE}print(name)",
     "bound again": f"{_GONE}ob = bpy.data.objects.new('o', None)\nob.name",
     "bound by a loop": f"{_GONE}for ob in bpy.data.objects:\n    ob.name",
