@@ -145,8 +145,15 @@ class Expressions(Members):
             )  # fmt: skip
         if known is not None:
             return known
+        if found.missing and self._may_be_of_another(node):
+            return UNKNOWN  # what took its place here says nothing of code for where it was
         made = self.here.scope.state.active
         return made if made is not None and READ_ACTIVE.issuperset(found.symbols or "?") else found.type
+
+    def _may_be_of_another(self, node: ast.Attribute) -> bool:
+        """Whether an attribute that something lacks is read of something else, or for another Blender."""
+        row = self.here.resolutions[node]
+        return not row.sure or row.is_ready_for("AttributeError")
 
     def _subscript(self, node: ast.Subscript) -> Type:
         owner = self.evaluate(node.value)

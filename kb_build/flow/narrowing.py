@@ -223,6 +223,7 @@ class Narrowing(Guards):
             return
         found = self.attribute(owner, attribute)
         if found.missing or found.possible:
-            self.here.scope.state.chains[f"{text}.{attribute}"] = found.type
+            # Where it is lacking here, this is for another Blender.
+            self.here.scope.state.chains[f"{text}.{attribute}"] = UNKNOWN if found.missing else found.type
         if found.missing:
             self._doubt_chain(text)

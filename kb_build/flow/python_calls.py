@@ -234,8 +234,10 @@ class PythonCalls(ScriptCalls):
             self._resolve_named(call, text, found)
         elif found.symbols:
             self.resolve(call.node.args[1], "text", text, found.symbols, sure=found.sure)
-        kind = found.type
-        return join(kind, call.argument(2)) if len(call.arguments) > 2 else kind
+        if len(call.arguments) < 3:
+            return found.type
+        # Where it is lacking here, what is read is for another Blender.
+        return UNKNOWN if found.missing else join(found.type, call.argument(2))
 
     def _is_surely_named(self, call: ReadCall) -> bool:
         """Whether a call surely asks things of the API for the attribute that its second argument names."""

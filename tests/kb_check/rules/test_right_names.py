@@ -153,6 +153,26 @@ def test_what_is_read_from_a_lost_name_has_the_type_that_it_had(
     assert [one.symbol for one in found][1:] == [told]
 
 
+@pytest.mark.parametrize(
+    "code",
+    [
+        "if hasattr(action, 'fcurves'):\n    action.{lost}",
+        "if hasattr(bpy.types.Action, 'fcurves'):\n    action.{lost}",
+        "if bpy.app.version < (5, 0, 0):\n    action.{lost}",
+        "try:\n    action.{lost}\nexcept AttributeError:\n    pass",
+        "curves = action.fcurves if hasattr(action, 'fcurves') else None\nif curves:\n    {lost}",
+        "curves = getattr(action, 'fcurves', None)\nif curves:\n    {lost}",
+        "try:\n    curves = action.fcurves\nexcept AttributeError:\n    curves = None\nif curves:\n    {lost}",
+    ],
+)
+def test_what_is_read_from_a_lost_name_for_another_blender_is_not_judged(
+    rule_checker: Checker, code: str
+) -> None:
+    lost = "fcurves.new('x', action_group='x')" if "action.{" in code else "curves.new('x', action_group='x')"
+    text = f"import bpy\naction = bpy.data.actions.new('x')\n{code.format(lost=lost)}\n"
+    assert rule_checker.check(text) == []
+
+
 def test_an_operator_is_fixed_with_its_keywords(rule_checker: Checker) -> None:
     code = "bpy.ops.export_scene.obj(filepath='/tmp/x.obj', use_selection=True)"
     assert _sure(rule_checker, code) == [["wm.obj_export"], ["export_selected_objects"]]
