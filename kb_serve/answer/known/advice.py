@@ -388,6 +388,7 @@ ADVICE: tuple[Advice, ...] = (
             stems("material node shader socket"),
             stems("color colour emission roughness strength value"),
         ),
+        unless=stems("default"),  # who writes that knows it
     ),
     Advice(
         _AS_MODIFIED,

@@ -774,6 +774,9 @@ def test_a_film_has_a_medium_of_its_own(reader: BaseReader) -> None:
 
 
 def test_an_input_of_a_node_is_animated_by_itself(reader: BaseReader) -> None:
+    insert = f"{TYPES}bpy_struct.keyframe_insert"
+    assert "An input of a node" in said(reader, insert, "how to add keyframes to a shader node value")
+    assert "An input of a node" not in said(reader, insert, "node.inputs[0].keyframe_insert('default_value')")
     told = said(reader, f"{TYPES}Material", "keyframe the emission strength of a material")
     assert '.keyframe_insert("default_value", frame=1)`' in told
     tree = bpy.data.materials.new("m").node_tree
