@@ -116,10 +116,11 @@ def _enabled(analysis: Analysis) -> Iterator[str]:
 
 def _names_given(call: ast.Call) -> list[ast.expr]:
     """What a call that enables an add-on is given for its name; none for other calls."""
-    called = call.func.attr if isinstance(call.func, ast.Attribute) else ""
-    if called not in _ENABLING or not isinstance(call.func, ast.Attribute):
-        return []
-    is_by_place = isinstance(call.func.value, ast.Name) and call.func.value.id == _BY_PLACE
+    match call.func:
+        case ast.Attribute(value=owner, attr=called) if called in _ENABLING:
+            is_by_place = isinstance(owner, ast.Name) and owner.id == _BY_PLACE
+        case _:
+            return []
     if called == "enable" and not is_by_place:
         return []
     given = [keyword.value for keyword in call.keywords if keyword.arg == _ENABLING[called]]

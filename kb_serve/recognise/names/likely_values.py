@@ -86,9 +86,9 @@ def likely_items(written: str, items: Sequence[EnumItem], reader: BaseReader) ->
     """The same of items with their labels: the one that is labelled so, ``SUBSURF`` for ``SUBDIVISION_SURFACE``; where
     none is alike, the few whose labels say it and more, or else what Blender says that things called so are.
     """
-    if exact := [item.identifier for item in items if is_labelled(item, written)]:
+    if exact := _labelled(written, items):
         return exact
-    saying_more = labelled_items(written, items)
+    saying_more = _saying_more(written, items)
     return (
         likely_values(written, [item.identifier for item in items])
         or (saying_more if len(saying_more) <= _MOST else [])
@@ -96,18 +96,22 @@ def likely_items(written: str, items: Sequence[EnumItem], reader: BaseReader) ->
     )
 
 
-def is_labelled(item: EnumItem, written: str) -> bool:
-    """Whether an item is shown as what is written, ``NEGATIVE_Z`` of ``-Z``."""
-    return item.name.casefold() == written.replace("_", " ").casefold()
-
-
 def labelled_items(written: str, items: Iterable[EnumItem]) -> list[str]:
-    """The items that are labelled as what is written; else those whose labels have all its words, those with the
-    fewest others first: SUBSURF, which is labelled Subdivision Surface, of ``SUBDIVISION``.
-    """
+    """The items that are labelled as what is written; else those whose labels say it and more."""
     items = list(items)
-    if exact := [item.identifier for item in items if is_labelled(item, written)]:
-        return exact
+    return _labelled(written, items) or _saying_more(written, items)
+
+
+def _labelled(written: str, items: Iterable[EnumItem]) -> list[str]:
+    """The items that are shown as what is written, ``NEGATIVE_Z`` of ``-Z``."""
+    meant = written.replace("_", " ").casefold()
+    return [item.identifier for item in items if item.name.casefold() == meant]
+
+
+def _saying_more(written: str, items: Iterable[EnumItem]) -> list[str]:
+    """The items whose labels have all words of what is written, those with the fewest others first: SUBSURF, which is
+    labelled Subdivision Surface, of ``SUBDIVISION``.
+    """
     said = set(terms(written))
     labels = {item.identifier: set(terms(item.name)) for item in items}
     having = [identifier for identifier, label in labels.items() if said and said <= label]
