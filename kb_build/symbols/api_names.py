@@ -14,6 +14,8 @@ GROUPS = f"{TYPES}bpy_prop_collection_idprop"
 ID = f"{TYPES}ID"
 NODE = f"{TYPES}Node"
 OBJECT = f"{TYPES}Object"
+CONTEXT = f"{TYPES}Context"
+BLEND_DATA = f"{TYPES}BlendData"
 # What lets a Blender without a window draw, since 5.2.
 BEGIN_DRAWING = "gpu.init"
 

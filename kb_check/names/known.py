@@ -7,7 +7,7 @@ from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import distinct_words, stem, words
-from kb_build.symbols.api_names import OPERATORS, SIDES, STRUCT, TYPES
+from kb_build.symbols.api_names import CONTEXT, OPERATORS, SIDES, STRUCT, TYPES
 from kb_build.symbols.paths import is_socket, last_name, plain_path
 from kb_check.names.likely import by_label
 from kb_serve.rank.meant_members import meant_members
@@ -35,7 +35,6 @@ _KEPT = 512  # names that a class lacks, as one is often used many times
 # Methods of all structures, which are plurals of what properties are called.
 _PLURALS = frozenset({"items", "keys", "values"})
 _COLLECTION = f"{TYPES}bpy_prop_collection"
-_CONTEXT = f"{TYPES}Context"
 _TURNING_ON = frozenset({"use", "show", "is", "has"})  # what the names of switches begin with
 _PART = frozenset("([:")  # in the path of a parameter, a socket, an item
 
@@ -248,7 +247,7 @@ class KnownNames:
         """What the search finds of a class or module by a name that it lacks; of its cases with theirs. Nothing of what
         has so few members that all are told, nor of the context, of which texts on all of Blender speak.
         """
-        if not self.reader.entry(owner) or self._own(owner) or owner == _CONTEXT:
+        if not self.reader.entry(owner) or self._own(owner) or owner == CONTEXT:
             return []
         lineage = {owner, *(ancestor.path for ancestor in self.reader.lineage(owner))}
         missing = MissingName(name, owner, assigned=assigned)

@@ -42,7 +42,7 @@ from kb_build.flow.types import (
     members,
     without_none,
 )
-from kb_build.symbols.api_names import GROUPS, SIDES, STRUCT
+from kb_build.symbols.api_names import BLEND_DATA, CONTEXT, GROUPS, SIDES, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.records import NAMES_ITEMS
 from kb_check.calls.resolved import callee_path
@@ -67,9 +67,7 @@ _VECTORS = frozenset({*LENGTHS, "mathutils.Vector", "mathutils.Matrix"})
 _NO_STEPS = frozenset({"bmesh.types.BMVertSeq", "bmesh.types.BMEdgeSeq", "bmesh.types.BMFaceSeq",
                        "bmesh.types.BMLoopSeq", "bmesh.types.BMElemSeq"})  # fmt: skip
 # Structures that refuse custom properties of any name, as tried.
-_NO_CUSTOM_PROPERTIES = frozenset(
-    {"bpy.types.Context", "bpy.types.BlendData", "bpy.types.RenderSettings", "bpy.types.MeshVertex"}
-)
+_NO_CUSTOM_PROPERTIES = frozenset({CONTEXT, BLEND_DATA, f"{T}RenderSettings", f"{T}MeshVertex"})
 _DECLARATIONS_SINCE = 2, 93
 _BMESH, _ELEMENT = "bmesh.ops.", "bmesh.types.BM"
 _FILLING = frozenset({"update", "setdefault"})

@@ -29,7 +29,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, Plain, members
-from kb_build.symbols.api_names import OBJECT
+from kb_build.symbols.api_names import BLEND_DATA, CONTEXT, OBJECT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.object_data import OBJECT_DATA
 from kb_build.symbols.records import SCALAR_TYPES
@@ -55,8 +55,7 @@ if TYPE_CHECKING:
     from kb_check.names.known import Lacking
     from kb_check.script import Script
 
-_DATA, _LOAD = "bpy.types.BlendData", "bpy.types.BlendDataLibraries.load"
-_CONTEXT = "bpy.types.Context"
+_LOAD = f"{T}BlendDataLibraries.load"
 _OF_OBJECTS = frozenset(OBJECT_DATA.values())
 _LET_PASS = frozenset({"driver_remove"})
 # Before, what is assigned to an unknown name of a property group is lost, and no error.
@@ -69,7 +68,7 @@ def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("attribute", "store", "text", "button"):
         owner = _class_of(script, row.missing[0])
         lost = row.kind == "store" and script.version < _REFUSED and script.api.descends(owner, _OF_SCRIPTS)
-        if not owner.startswith("bpy.ops") and script.api.is_class(owner) and owner != _CONTEXT:
+        if not owner.startswith("bpy.ops") and script.api.is_class(owner) and owner != CONTEXT:
             had = _owner_that_had(script, row, owner)
             lacking = script.names.member(had, row.value, reading=row.kind != "store")
             level = "warning" if lost or _is_let_pass(row) else "error"
@@ -164,16 +163,20 @@ def _of_libraries(script: Script) -> Iterator[Finding]:
     ]
     names = {name for name in given if given.count(name) == len(bindings(script).get(name, ()))}
     for part in script.all(ast.Attribute) if names else ():
-        if isinstance(part.value, ast.Name) and part.value.id in names and script.names.had(_DATA, part.attr):
+        if (
+            isinstance(part.value, ast.Name)
+            and part.value.id in names
+            and script.names.had(BLEND_DATA, part.attr)
+        ):
             if (
                 script.type_of(part.value) is None
                 or part.attr in words_in_texts(script)
                 or is_tried(script, part, LACKS)
             ):
                 continue
-            lacking = script.names.member(_DATA, part.attr)
+            lacking = script.names.member(BLEND_DATA, part.attr)
             owner, _, name = lacking.replacement.rpartition(".")
-            edit = script.renamed(part, name) if owner == _DATA else None
+            edit = script.renamed(part, name) if owner == BLEND_DATA else None
             is_read = isinstance(part.ctx, ast.Load)
             lost = "" if is_read else " Nothing is loaded of what is assigned to it."
             yield Finding(

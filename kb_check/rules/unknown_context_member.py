@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.api_names import CONTEXT
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 
@@ -22,13 +23,11 @@ if TYPE_CHECKING:
     from kb_check.findings import Finding
     from kb_check.script import Script
 
-_CONTEXT = "bpy.types.Context"
-
 
 def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("attribute", "store"):
-        if row.missing[0] == _CONTEXT:
-            yield lacking_finding(script, RULE.id, row, script.names.member(_CONTEXT, row.value))
+        if row.missing[0] == CONTEXT:
+            yield lacking_finding(script, RULE.id, row, script.names.member(CONTEXT, row.value))
 
 
 RULE = Rule("unknown-context-member", "error", "A member that the context does not have", _check)

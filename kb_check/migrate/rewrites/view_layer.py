@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.api_names import CONTEXT
 from kb_check.migrate.rewrite import Rewrite
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ def _propose(place: Place) -> Iterator[Change]:
 
 def _view_layer(place: Place, scene: ast.expr) -> str:
     """The view layer of a scene: the context's where the scene is the context's, else the scene's first."""
-    if isinstance(scene, ast.Attribute) and scene.attr == "scene" and place.is_a(scene.value, _CONTEXT):
+    if isinstance(scene, ast.Attribute) and scene.attr == "scene" and place.is_a(scene.value, CONTEXT):
         return f"{place.operand(scene.value)}.view_layer"
     if isinstance(scene, ast.Name) and (context := _only_context(place, scene.id)):
         return f"{context}.view_layer"
@@ -49,12 +50,11 @@ def _only_context(place: Place, name: str) -> str:
         value = place.stored_value(node)
         if not isinstance(value, ast.Attribute) or value.attr != "scene":
             return ""
-        if not place.is_a(value.value, _CONTEXT):
+        if not place.is_a(value.value, CONTEXT):
             return ""
         values.add(place.text(value.value))
     # Another context's name may mean nothing where the scene is used.
     return values.pop() if len(values) == 1 and values <= {f"{place.bpy}.context"} else ""
 
 
-_CONTEXT = "bpy.types.Context"
 REWRITE = Rewrite("view-layer", _propose)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.symbols.api_names import OBJECT, OPERATORS, TYPES
+from kb_build.symbols.api_names import BLEND_DATA, OBJECT, OPERATORS, TYPES
 from kb_build.symbols.flags import empty_when_new, fillers
 from kb_build.symbols.records import FILLED_ON, READ_ONLY
 from kb_serve.answer.steps.variable_names import OBJ, class_called
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 _FIRST_WORD = re.compile(r"^(?!bpy\b|obj\b|scene\b)[a-z_]+\.(?=\w+(?: = |\())")
 _PARTS = re.compile(r"\.(?![^\[]*\])")  # between names, and not in a key
 _DATA = "data"
-_BLEND_DATA = f"{TYPES}BlendData"
 
 
 class Ready(NamedTuple):
@@ -106,7 +105,7 @@ class PointerFills:
         """The call that loads a data-block which nothing but a file makes, as a film; empty for none."""
         for entry in self._reader.by_name("load"):
             symbol = self._reader.symbol(entry.path)
-            holders = self._reader.members(_BLEND_DATA).values()
+            holders = self._reader.members(BLEND_DATA).values()
             holder = next((one.name for one in holders if f"{TYPES}{one.collection}" == entry.owner), "")
             if symbol is not None and holder and any(result.type == cls for result in symbol.returns):
                 return f"bpy.data.{holder}.load(filepath)"

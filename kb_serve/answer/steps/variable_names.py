@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.api_names import OBJECT, TYPES
+from kb_build.symbols.api_names import BLEND_DATA, OBJECT, TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,7 +20,7 @@ _THERE = {
     OBJECT: OBJ,
     f"{TYPES}Scene": "scene",
     f"{TYPES}ViewLayer": "view_layer",
-    f"{TYPES}BlendData": "bpy.data",
+    BLEND_DATA: "bpy.data",
     TREE: "tree",
 }
 _ROOTS = {name: cls for cls, name in _THERE.items()} | {"mesh": MESH}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.api_names import ID, STRUCT, TYPES
+from kb_build.symbols.api_names import BLEND_DATA, CONTEXT, ID, STRUCT, TYPES
 from kb_build.symbols.flags import empty_when_new, fillers
 from kb_build.symbols.records import WITHOUT_ACTIVE
 
@@ -16,7 +16,6 @@ ANY = frozenset(
     {STRUCT, ID, f"{TYPES}PropertyGroup", f"{TYPES}AnyType"}
 )  # what leads to these may lead to anything
 WEIGHTY = 9.0  # the weight from which on a pointer is one that scripts come upon without having asked for it
-_CONTEXT, _DATA = f"{TYPES}Context", f"{TYPES}BlendData"
 _OBJECT_DATA = f"{TYPES}Object.data"
 _FEW = 2
 
@@ -55,7 +54,7 @@ class Absent:
             return ""
         kinds = [entry.name for entry in self._reader.lineage(cls) if entry.path not in ANY]
         collections = [entry for kind in kinds for entry in self._reader.collections_with(kind)]
-        ranked = sorted(self._reader.heaviest(collections), key=lambda entry: entry.owner != _DATA)
+        ranked = sorted(self._reader.heaviest(collections), key=lambda entry: entry.owner != BLEND_DATA)
         return ranked[0].path if ranked else ""
 
     def pointer_to(self, cls: str) -> str:
@@ -96,7 +95,7 @@ class Absent:
         """The members of the context, most used first, that are None where no object is active."""
         symbols = {
             entry: self._reader.symbol(entry.path)
-            for entry in self._reader.members(_CONTEXT).values()
+            for entry in self._reader.members(CONTEXT).values()
             if entry.kind == "context" and entry.type == "pointer"
         }
         return self._reader.heaviest(
@@ -107,7 +106,7 @@ class Absent:
 def as_written(collection: str) -> str:
     """What scripts write for a collection: ``bpy.data.objects``, ``nodes``."""
     owner, _, name = collection.rpartition(".")
-    return f"bpy.data.{name}" if owner == _DATA else name
+    return f"bpy.data.{name}" if owner == BLEND_DATA else name
 
 
 def is_empty_when_new(path: str, reader: BaseReader) -> bool:

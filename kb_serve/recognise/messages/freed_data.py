@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.api_names import STRUCT, TYPES
+from kb_build.symbols.api_names import BLEND_DATA, STRUCT, TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.messages.guides import ON_FREED, add_guide
 
@@ -54,7 +54,7 @@ class FreedData:
             if match["module"]:
                 recognition.add("bmesh.types.BMesh.free", 0.84, "error message")
                 continue
-            for entry in self._reader.members(f"{TYPES}BlendData").values():
+            for entry in self._reader.members(BLEND_DATA).values():
                 if entry.target == match["type"] and (
                     remove := self._reader.member_of(TYPES + entry.collection, "remove")
                 ):

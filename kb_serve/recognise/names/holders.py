@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import stem, stems_of, words
-from kb_build.symbols.api_names import STRUCT, TYPES
+from kb_build.symbols.api_names import BLEND_DATA, STRUCT
 from kb_build.symbols.paths import last_name
 from kb_serve.recognise.names.elements import ADDED_BY, REMOVED_BY, REMOVING, Elsewhere
 from kb_serve.recognise.names.held_collections import (
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
 
 _FEW = 3
-_ROOT = f"{TYPES}BlendData"
 _VALUES = "mathutils."
 _BMESH_OPS = "bmesh.ops."
 _TAKING_OUT = frozenset({"discard", "pop", "remove", "unlink"})
@@ -174,7 +173,7 @@ def _removed(owner: str, verb: str, reader: BaseReader) -> list[Elsewhere]:
 
     def order(one: Held) -> tuple[bool, bool, float]:
         is_other = verb in _REMOVERS and one.function.name != verb
-        return is_other, one.collection.owner != _ROOT, -weights.get(one.collection.path, 0.0)
+        return is_other, one.collection.owner != BLEND_DATA, -weights.get(one.collection.path, 0.0)
 
     return [_removal(held) for held in sorted(found, key=order)] or list(dict.fromkeys(others))
 
@@ -183,7 +182,7 @@ def _removal(held: Held) -> Elsewhere:
     """How what holds a thing removes it."""
     path = held.function.path
     does = "lets go of it" if held.function.name in _OUT else "removes it"
-    if held.collection.owner == _ROOT:
+    if held.collection.owner == BLEND_DATA:
         return Elsewhere(path, f"`bpy.data.{held.call}` {does} (`{path}`).")
     holder = last_name(held.collection.owner)
     return Elsewhere(path, f"The `{holder}` that holds it {does}: `.{held.call}` (`{path}`).")
@@ -231,7 +230,7 @@ def _told(held: Held) -> Elsewhere:
     """What a collection of a thing does."""
     name, path = held.function.name, held.function.path
     does = "makes one" if name.startswith(_OF_A_KIND) else _DOES.get(name, "removes one")
-    whole = f"bpy.data.{held.call}" if held.collection.owner == _ROOT else f".{held.call}"
+    whole = f"bpy.data.{held.call}" if held.collection.owner == BLEND_DATA else f".{held.call}"
     return Elsewhere(path, f"Its `.{held.access}` {does}: `{whole}` (`{path}`).")
 
 

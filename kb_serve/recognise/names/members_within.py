@@ -7,7 +7,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.index.analysis import key
-from kb_build.symbols.api_names import ID, OBJECT, STRUCT, TYPES
+from kb_build.symbols.api_names import CONTEXT, ID, OBJECT, STRUCT, TYPES
 from kb_serve.recognise.names.elements import ADDING, REMOVING
 from kb_serve.recognise.names.held_collections import is_none_when_new, members_of
 from kb_serve.recognise.names.layers import in_layers
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 OF_ELEMENTS = "The elements of"  # how notes begin on what they have
 _FEW = 3
-_CONTEXT = f"{TYPES}Context"
 # Parts whose members say what the same names are worth there, how it is drawn, or what is done with it: the weight of
 # gravity, the size of a baked image. None of them is what the name means of the thing.
 _OF_OTHER_USE = frozenset({"EffectorWeights", "BakeSettings", "VolumeDisplay", "ParticleSettingsTextureSlot"})
@@ -152,7 +151,7 @@ def _beside(owner: str, name: str, reader: BaseReader) -> Within | None:
             return Within(member, f"`{holder}` has it (`{member.path}`): this is its `.{one.name}`.")
     # What a whole data-block has beside it is another thing, as an object's force field is for its rigid body; and so
     # is what the context has.
-    is_part_too = is_alone and holding[0].owner != _CONTEXT and not reader.descends(holding[0].owner, ID)
+    is_part_too = is_alone and holding[0].owner != CONTEXT and not reader.descends(holding[0].owner, ID)
     for part in reader.members(holding[0].owner).values() if is_part_too else ():
         is_part = part.type == "pointer" and part.is_read_only and part.target not in {cls, *_OF_OTHER_USE}
         if is_part and (member := _own_of(f"{TYPES}{part.target}", name, reader)) and member.owner != ID:

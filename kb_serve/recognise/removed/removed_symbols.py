@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
-from kb_build.symbols.api_names import ID, TYPES
+from kb_build.symbols.api_names import CONTEXT, ID, TYPES
 from kb_build.symbols.paths import argument_of, item_of, plain_path, socket_node, split_path
 from kb_serve.recognise.names.likely_keywords import likely_keywords
 from kb_serve.recognise.resolving.variables import usual_classes
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from kb_serve.reader import BaseReader, Successor
 
-_INSTANCES = {f"{TYPES}Context": "bpy.context"}
+_INSTANCES = {CONTEXT: "bpy.context"}
 _LISTING = "listing of"  # how the sources begin that are no word on a change
 _MOST_OWNERS = 40  # a name that more removed symbols have says nothing about its class
 

@@ -6,7 +6,7 @@ import re
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.api_names import COLLECTION, TYPES
+from kb_build.symbols.api_names import BLEND_DATA, COLLECTION, CONTEXT, TYPES
 from kb_build.symbols.math_classes import math_class
 from kb_build.symbols.python_values import is_new_list
 from kb_serve.recognise.resolving.untyped_properties import SEQUENCES, VALUES
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
 
 _ARRAY = f"{TYPES}bpy_prop_array"
-_INSTANCES = {"bpy.context": "bpy.types.Context", "bpy.data": "bpy.types.BlendData"}
+_INSTANCES = {"bpy.context": CONTEXT, "bpy.data": BLEND_DATA}
 _SEQUENCE = re.compile(r"(?:list|set|tuple)\[(?:bpy\.types\.)?([A-Z]\w*)(?:, \.\.\.)?\]")
 _VALUELESS = frozenset({"bundle", "closure", "custom", "geometry", "matrix", "shader"})  # types of sockets
 _CLASS_NAME = re.compile(r"\b(?:\w+\.)*[A-Z]\w+")

@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
-from kb_build.symbols.api_names import OBJECT, TYPES
+from kb_build.symbols.api_names import BLEND_DATA, OBJECT, TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -238,7 +238,7 @@ class Variables:
         for entry in named if by_pointers else ():
             if entry.target and entry.kind == "property" and entry.type == "pointer":
                 yield TYPES + entry.target, _POINTER if len(pointed) == 1 else 0.5
-        for entry in self._reader.members(f"{TYPES}BlendData").values():
+        for entry in self._reader.members(BLEND_DATA).values():
             if entry.type == "collection" and (fit := variable_fit(name, entry.target)) > 0:
                 yield TYPES + entry.target, fit if fit == 1.0 else min(fit, _POINTER)
         spelled = [identifier for _, identifier in self._reader.by_key(key(name))]
