@@ -6,10 +6,11 @@ ob.location.xy.x = 1  # reported: location.xy is a copy
 ob.matrix_world.to_euler().x = 1  # reported: likewise
 bpy.context.selected_objects.append(ob)  # reported: each reading makes a new list
 bpy.context.view_layer.objects.active == ob  # reported: compares; = assigns
+mesh.vertices.foreach_set("normal", normals)  # reported: read-only, and foreach_set says nothing
 ```
 
-Not reported: what changes the thing itself (``ob.location.x = 1``, ``ob.matrix_world.translation.x = 1``), and
-attributes that are only named, as notebooks do.
+Not reported: what changes the thing itself (``ob.location.x = 1``, ``ob.matrix_world.translation.x = 1``), attributes
+that are only named, as notebooks do, and sizes of faces (``loop_total``) beside the ``loop_start`` that decides them.
 """
 
 from __future__ import annotations
@@ -19,10 +20,12 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Builtin, Function, Instance, Plain, Sequence
+from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.python_values import on_changing
 from kb_build.symbols.records import READ_ONLY
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
+from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,6 +34,8 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _MATH = "mathutils."
+# Older Blenders ask for both, and scripts for all of them give both.
+_FACE_SIZE, _FACE_START = f"{T}MeshPolygon.loop_total", "loop_start"
 _SWIZZLE = re.compile(r"[xyzw]{2,4}")
 _RETURNS_ITSELF = frozenset(
     {"freeze"}
@@ -42,6 +47,7 @@ def _check(script: Script) -> Iterator[Finding]:
         match node:
             case ast.Expr(value=ast.Call() as call):
                 yield from _thrown_away(script, call)
+                yield from _fills_read_only(script, call)
             case ast.Expr(value=ast.Compare(ops=[ast.Eq()]) as compared):
                 yield from _compared(script, compared)
             case ast.Assign(targets=targets):
@@ -104,6 +110,23 @@ def _pure(script: Script, call: ast.Call, symbol: Symbol) -> Finding:
         (path,),
         fix,
     )
+
+
+def _fills_read_only(script: Script, call: ast.Call) -> Iterator[Finding]:
+    """A ``foreach_set`` of what is read-only, which Blender passes over in silence."""
+    match call:
+        case ast.Call(func=ast.Attribute(attr="foreach_set"), args=[ast.Constant() as name, *_]):
+            symbol = _symbol_at(script, name)
+        case _:
+            return
+    if symbol is None or READ_ONLY not in symbol.flags:
+        return
+    if symbol.path == _FACE_SIZE and _FACE_START in named_words(script):
+        return
+    yield Finding(
+        RULE.id, "warning", script.span(name),
+        f"`{symbol.path}` is read-only: `foreach_set` leaves it as it is, without an error.", symbol.path,
+    )  # fmt: skip
 
 
 def _compared(script: Script, node: ast.Compare) -> Iterator[Finding]:

@@ -19,6 +19,7 @@ SETTING = """\
 import bpy, mathutils
 scene = bpy.context.scene
 mesh = bpy.data.meshes.new("mesh")
+mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
 ob = bpy.data.objects.new("object", mesh)
 scene.collection.objects.link(ob)
 material = bpy.data.materials.new("material")
@@ -58,6 +59,8 @@ IDLE = {
     "scene.tool_settings.snap_elements.add('VERTEX')": "scene.tool_settings.snap_elements",
     "scene.render.resolution_x == 5": "scene.render.resolution_x",
     "bpy.context.view_layer.objects.active == ob": "bpy.context.view_layer.objects.active",
+    "mesh.vertices.foreach_set('normal', [1, 0, 0] * 3)": "mesh.vertices[0].normal",
+    "mesh.polygons.foreach_set('loop_total', [2])": "mesh.polygons[0].loop_total",
 }
 WORKING = {
     "ob.location.normalize()": "ob.location",
@@ -71,6 +74,7 @@ WORKING = {
     "ob.scale *= 2": "ob.scale",
     "ob.name = ob.name.replace('o', 'a')": "ob.name",
     "scene.tool_settings.snap_elements = {'VERTEX'}": "scene.tool_settings.snap_elements",
+    "mesh.vertices.foreach_set('co', [1, 0, 0] * 3)": "mesh.vertices[0].co",
 }
 
 
