@@ -474,6 +474,12 @@ class BaseReader:
         sql = "SELECT target, how, version, source FROM successors WHERE path = ? ORDER BY position"
         return [Successor(*row) for row in self.rows(sql, path)]
 
+    def replaced_by(self, path: str) -> list[str]:
+        """Paths of the symbols that other versions had in place of one that this version has."""
+        return [
+            row[0] for row in self.rows("SELECT path FROM successors WHERE target = ? ORDER BY path", path)
+        ]
+
     def successors_of_classes(self) -> list[tuple[str, str]]:
         """(removed class, class in its place), the best first for each."""
         sql = """SELECT path, target FROM successors WHERE path GLOB 'bpy.types.*' AND path NOT GLOB 'bpy.types.*[.(:]*'

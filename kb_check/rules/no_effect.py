@@ -26,6 +26,7 @@ from kb_build.symbols.records import READ_ONLY
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
 from kb_check.syntax.words import named_words
+from kb_serve.recognise.changed_by import changed_by
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -123,9 +124,9 @@ def _fills_read_only(script: Script, call: ast.Call) -> Iterator[Finding]:
         return
     if symbol.path == _FACE_SIZE and _FACE_START in named_words(script):
         return
+    told = f"`{symbol.path}` is read-only: `foreach_set` leaves it as it is, without an error."
     yield Finding(
-        RULE.id, "warning", script.span(name),
-        f"`{symbol.path}` is read-only: `foreach_set` leaves it as it is, without an error.", symbol.path,
+        RULE.id, "warning", script.span(name), f"{told} {changed_by(symbol.path)[1]}".rstrip(), symbol.path
     )  # fmt: skip
 
 

@@ -33,6 +33,10 @@ def _of_edit_bone(name: str, value: str) -> tuple[str, str]:
 
 # Property → (what changes it, how).
 CHANGED_BY = {
+    f"{T}AnimData.action": (
+        f"{T}AnimData.use_tweak_mode",
+        "While a strip of the NLA is tweaked no action is given: `anim_data.use_tweak_mode = False` ends that.",
+    ),
     f"{T}Paint.brush": (
         "bpy.ops.brush.asset_activate",
         "Brushes are assets: in the mode that paints, `bpy.ops.brush.asset_activate(asset_library_type='ESSENTIALS', "

@@ -52,6 +52,12 @@ BAD_KEYWORD = re.compile(
     r"|(?<![\w.])(?P<method>\w++(?:\.\w++)++)\(\): was called with invalid keyword argument\(s\) \((?P<several>[^)]*)\)"
 )
 IN_FUNCTION = re.compile(r"(?<![\w.])(?P<method>\w++(?:\.\w++)*+)\(\): error with (?:keyword )?argument")
+IN_ARGUMENT = re.compile(r"error with (?:keyword )?argument (?:\d+, )?\"(?P<name>\w+)\" -")
+# Of 5.0 and newer with no word behind it.
+NO_SEQUENCE = re.compile(
+    r"(?<![\w.])(?P<function>\w++(?:\.\w++)++)\(\): error with (?:keyword )?argument (?:\d+, )?\"(?P<name>\w+)\" -"
+    r"(?:\s*sequence expected at dimension 1|\s*(?=$|[\w.]+\())"
+)
 TOO_MANY = re.compile(
     r"(?<![\w.])(?P<function>\w++(?:\.\w++)*+)(?:\(\):? takes (?:at most|exactly)| expected at most) "
     r"(?P<most>\d+) arguments?[,\s(]+(?:got )?(?P<given>\d+)"
@@ -60,7 +66,7 @@ BY_NAME_ONLY = re.compile(
     r"(?<![\w.])(?P<function>\w++(?:\.\w++)++)\(\): required parameter \"(?P<name>\w+)\" "
     r"(?:to be a keyword argument|not specified)"
 )
-NO_MODULE = re.compile(r"No module named ['\"](?P<module>[\w.]+)['\"]")
+NO_MODULE = re.compile(r"No module named ['\"](?P<module>[\w.-]+)['\"]")
 NOT_DEFINED = re.compile(r"\bname ['\"](?P<name>\w+)['\"] is not defined")
 NO_IMPORT = re.compile(r"cannot import name ['\"](?P<name>\w+)['\"] from ['\"](?P<module>[\w.]+)['\"]")
 POLL = re.compile(r"Operator (?P<path>bpy\.ops\.\w+\.\w+)\.poll\(\)")
@@ -81,7 +87,11 @@ READ_ONLY = re.compile(
 )
 FREED = re.compile(r"\b(?:StructRNA|(?P<module>BMesh) data) of type (?P<type>\w+) has been removed")
 PRODUCT = re.compile(
-    r"(?:Element-wise|Color) multiplication: not supported between '(?P<left>\w+)' and '(?P<right>\w+)'"
+    r"(?:(?:Inplace )?[Ee]lement-wise|Color) multiplication: not supported between "
+    r"'(?P<left>\w+)' and '(?P<right>\w+)'"
+)
+MATRIX_PRODUCT = re.compile(
+    r"Matrix multiplication: not supported between '(?P<left>\w+)' and '(?P<right>\w+)'"
 )
 NO_WRITING = re.compile(
     r"Writing to ID classes in this context is not allowed(?:.*?error setting (?P<owner>\w+)\.(?P<name>\w+))?"
@@ -108,7 +118,17 @@ NO_FLUIDS = re.compile(
 INCOMPATIBLE = re.compile(r"class (?P<class>\w+), function (?P<function>\w+): incompatible return value")
 NO_PROPERTY = re.compile(r"'\w+' (?P<kind>\w+Property) could not register")
 NO_PARENT = re.compile(r"Registering panel class: parent '(?P<parent>\w*)' for '\w*' not found")
-NO_NODE_TYPE = re.compile(r"Node type (?P<type>\w+) undefined")
+NO_NODE_TYPE = re.compile(r"Node type (?P<type>\w[\w ]{0,60}) undefined")
+NO_NODE_OF_TREE = re.compile(r"Cannot add node of type (?P<type>\w+) to node tree '[^']*'")
+NOT_ANIMATED = re.compile(r"\bkeyframe_(?:insert|delete)\(\):? property \"(?P<name>\w+)\" not animatable")
+OF_ELEMENTS = re.compile(
+    r"\bforeach_[gs]et\(\.\.\) '(?P<owner>\w+)\.(?P<collection>\w+)\[\.\.\.\]' elements have no attribute "
+    r"'(?P<name>\w+)'"
+)
+EXPECTED_MEMBER = re.compile(
+    r"expected (?P<base>\w+), \w+ class to have an? \"(?P<name>\w+)\" (?:attribute|function)"
+)
+_FAILED_OTHERWISE = re.compile(r"\b(?:Index|Key|Reference|Runtime|Type|Value|ZeroDivision)Error:")
 NO_PATH = re.compile(
     r"\b(?:keyframe_(?:insert|delete)|driver_(?:add|remove))\(\):? property \"(?P<name>\w+)\" not found"
 )
@@ -136,6 +156,8 @@ _SIGNS = (
     "is read-only",
     "keyword",
     "module named",
+    "node of type",
+    "not animatable",
     "multiplication",
     "no setter",
     "not found",
@@ -164,7 +186,7 @@ _WORDING = re.compile(
     |\bFunction\.(?=\w+(?:\ expected|:\ |\ does\ not|\ enum))|[A-Z][A-Z_0-9]*_OT_\w+\.(?=\w+\ expected)
     |bpy_struct:\ (?=attribute|Context)|attribute\ "\w+"\ from\ "\w+"\ is\ read-only|Context\ property\ (?="\w+"\ is)
     |(?:StructRNA|BMesh\ data)\ of\ type\ \w+\ has\ been\ removed|BMeshOpsModule:\ operator
-    |\bNode\ type\ (?=\w+\ undefined)|\bnode\ of\ type\ (?=\w+)|'NoneType'\ object
+    |\bNode\ type\ (?=\w[\w\ ]{0,60}\ undefined)|\bnode\ of\ type\ (?=\w+)|'NoneType'\ object
     |\.\ Did\ you\ mean:\ '[^']*'\?
     |\berror\ setting\ \w+\.\w+
     |required\ parameter\ "\w+"\ (?:not\ specified|to\ be\ a\ keyword\ argument!?)|Calling\ operator\ (?=")
@@ -190,6 +212,11 @@ def first_matches(pattern: re.Pattern[str], query: str) -> Iterator[re.Match[str
 def is_message(query: str) -> bool:
     """Whether a query holds an error message."""
     return bool(_EXCEPTION.search(query) or _REPORT.search(query) or _WORDING.search(query))
+
+
+def has_failed_otherwise(query: str) -> bool:
+    """Whether a message is of something else than a name that is missing."""
+    return bool(_FAILED_OTHERWISE.search(query))
 
 
 def classes_of_things(query: str) -> frozenset[str]:

@@ -24,6 +24,7 @@ from kb_serve.recognise.code.wrong_values import wrong_values
 from kb_serve.recognise.message_patterns import (
     BAD_ENUM,
     classes_of_things,
+    has_failed_otherwise,
     is_message,
     without_callers_names,
     without_values,
@@ -38,6 +39,7 @@ from kb_serve.recognise.names.inputs_meant import input_meant
 from kb_serve.recognise.names.meant_elsewhere import meant_elsewhere
 from kb_serve.recognise.names.members_within import members_within
 from kb_serve.recognise.names.operator_words import OperatorWords
+from kb_serve.recognise.names.other_kinds import of_another_kind
 from kb_serve.recognise.names.said_otherwise import said_otherwise
 from kb_serve.recognise.names.spellings import Spellings
 from kb_serve.recognise.notes import SIMILAR
@@ -121,6 +123,21 @@ def _is_told(value: str, recognition: Recognition) -> bool:
     return any(removed.path.endswith(f":{value}") for removed in recognition.removed)
 
 
+def _leave_what_it_tells(
+    lacked: list[MissingName], recognition: Recognition, *, failed_otherwise: bool
+) -> None:
+    """Leaves out of the missing names all but what a message says is ``lacked``, where it says what failed: what else
+    the line lacks, Python has found there, as add-ons register it, or has not come to.
+    """
+    told = {last_name(match.id) for match in recognition.matches if match.why == "error message"}
+    if failed_otherwise or lacked:
+        recognition.missing, recognition.doubted = lacked, None
+        return
+    recognition.missing = [one for one in recognition.missing if one.name not in told]
+    if recognition.doubted and recognition.doubted.name in told:
+        recognition.doubted = None
+
+
 class Recogniser:
     """Recognises names against one base."""
 
@@ -153,11 +170,14 @@ class Recogniser:
         is_settled = recognition.best is not None and recognition.best.sure >= 1
         if not is_settled:
             self._messages.recognise(query, recognition)
+            lacked = [*recognition.missing]
             text = without_callers_names(without_wording(query))
             code = without_callers_names(without_wording(without_values(query)))
             is_plain = code == query and "/" not in query
             found = chains if is_plain else own.without(with_bindings(code, _outside_of_paths(code)))
             self._expressions.recognise(found, recognition)
+            if is_message(query):
+                _leave_what_it_tells(lacked, recognition, failed_otherwise=has_failed_otherwise(query))
             self._enum_values.recognise(text, recognition, classes_of_things(query))
             self._removed_values(text, recognition)
             described = "" if is_message(query) else asked_of_inputs(query)
@@ -365,6 +385,9 @@ class Recogniser:
             or f"active_{missing.name}" in names
             or any(self._is_called(path, missing.name) for path in otherwise)
         )
+        begun = any(name.startswith(f"{missing.name}_") for name in names)
+        if not (is_meant or begun) and self._of_another_kind(missing, recognition):
+            return
         if not is_meant and self._within(missing, recognition, on_new=bool(otherwise)):
             return
         for place, path in enumerate(otherwise):
@@ -434,6 +457,15 @@ class Recogniser:
             if last_name(path) == missing.name:
                 recognition.add(path, _OTHERWISE - 0.01 * len(found), SIMILAR)
         return bool(found)
+
+    def _of_another_kind(self, missing: MissingName, recognition: Recognition) -> bool:
+        """Adds the name on another kind of a thing, ``SunLight.angle`` for a PointLight; whether there is any."""
+        other = of_another_kind(missing.owner, missing.name, self._reader) if missing.sure else None
+        if other is None:
+            return False
+        recognition.add(other.member.path, _WITHIN, "within")
+        recognition.notes.append(other.note)
+        return True
 
     def _within(self, missing: MissingName, recognition: Recognition, *, on_new: bool) -> bool:
         """Adds the name on what the class points to, ``overlay`` of a SpaceView3D; whether there is any. What all

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from kb_serve.recognise import message_patterns as forms
@@ -12,6 +13,9 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.messages.named_symbols import NamedSymbols
     from kb_serve.recognise.recognition import Recognition
+
+
+_SEVERAL = re.compile(r"\[\d*\]|list|sequence")  # in the type of what takes several values
 
 
 class ArgumentPlaces:
@@ -27,6 +31,8 @@ class ArgumentPlaces:
             self._too_many(match["function"], int(match["most"]), recognition)
         for match in forms.first_matches(forms.BY_NAME_ONLY, query):
             self._by_name(match["function"], match["name"], recognition)
+        for match in forms.first_matches(forms.NO_SEQUENCE, query):
+            self._several(match["function"], match["name"], recognition)
 
     def _too_many(self, function: str, most: int, recognition: Recognition) -> None:
         """More arguments than a function or class takes: what it takes, one sequence perhaps."""
@@ -49,6 +55,14 @@ class ArgumentPlaces:
         else:
             told = f"takes {counted_arguments(most)}: `{symbol.signature}`."
         recognition.notes.append(f"`{symbol.path}` {told}")
+
+    def _several(self, function: str, argument: str, recognition: Recognition) -> None:
+        """An argument that takes several values, and was given one."""
+        symbol = self._reader.symbol(self._symbols.function(function))
+        parameter = next((one for one in symbol.parameters if one.name == argument), None) if symbol else None
+        if symbol and parameter and _SEVERAL.search(parameter.type):
+            recognition.add(symbol.path, 0.98, "error message")
+            recognition.notes.append(f"`{argument}` of `{symbol.path}` takes several values, a list: `[…]`.")
 
     def _by_name(self, function: str, argument: str, recognition: Recognition) -> None:
         """An argument that a function needs, or takes by name only."""

@@ -46,6 +46,10 @@ class Attributes:
                 self._explain(match["owner"], match["name"], query, recognition, of_module=of_module)
         for match in forms.first_matches(forms.NOT_IN_COLLECTION, query):
             self._owners.of_a_collection(match["name"], recognition)
+        for match in forms.first_matches(forms.OF_ELEMENTS, query):
+            self._lacking_owners.explain_elements(
+                match["owner"], match["collection"], match["name"], recognition
+            )
 
     def _explain(
         self, owner: str, name: str, query: str, recognition: Recognition, *, of_module: bool
@@ -55,7 +59,8 @@ class Attributes:
         elif owner == "bpy_prop_collection":
             self._owners.of_a_collection(name, recognition)
         elif owner == "module":  # of which the message does not tell the name
-            self._imports.tell_if_gone(TYPES + name, recognition)
+            if not self._imports.tell_if_gone(TYPES + name, recognition):
+                self._lacking_owners.explain_class(name, recognition)
         elif forms.NO_FLUIDS.search(query):  # of which another recogniser tells
             return
         elif owner in PYTHONS:

@@ -17,9 +17,10 @@ _FREED = (
     "name."
 )
 _NOT_MADE = (
-    "Blender has no class `{cls}`. If it is one of the script's own that defines `__init__`, that has to begin with "
-    "`super().__init__(*args, **kwargs)` and to take `self, *args, **kwargs`: without it the instance holds nothing, "
-    "and each attribute of Blender's says that it was removed."
+    "`{cls}` is a class of the script's own. An operator that has ended is gone: whatever still holds its `self`, as "
+    "a draw handler, a timer or another callback does, is taken away before `return {{'FINISHED'}}` or "
+    "`{{'CANCELLED'}}` (`draw_handler_remove`, `event_timer_remove`). Since 4.4 an instance is also said to be "
+    "removed where its class has an `__init__` that does not begin with `super().__init__(*args, **kwargs)`."
 )
 _PASSING = "DepsgraphObjectInstance"
 _PASSED = (

@@ -17,6 +17,12 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import Recognition
 
 _OBJECT = "Object"
+_ANY = "AnyType"
+_OF_CLASSES = "validating class"
+_NOTHING_GIVEN = (
+    "`{argument}` is None here: what is to be shown is not there, as an object without a material, or no active "
+    "object. Test it before: `if mat: layout.prop(mat, …)`."
+)
 _SEQUENCES = frozenset({"tuple", "list"})
 _KIND = "_type"  # at the end of the name of what decides which class a pointer takes
 
@@ -31,7 +37,12 @@ class GivenValues:
     def recognise(self, query: str, recognition: Recognition) -> None:
         """What to give in place of a value of another type."""
         for match in forms.first_matches(forms.GIVEN, query):
+            if _OF_CLASSES in query:  # whose attributes are told of elsewhere
+                continue
             wanted, given = match["wanted"] or match["of"], match["given"] or match["none"]
+            if given == "None" and wanted == _ANY and (argument := forms.IN_ARGUMENT.search(query)):
+                recognition.notes.append(_NOTHING_GIVEN.format(argument=argument["name"]))
+                continue
             setting = self._deciding(query, given)
             recognition.notes += [setting] if setting else self._what_to_give(wanted, given)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.messages.guides import EXTENSIONS, ON_WHEELS, add_guide
+from kb_serve.recognise.messages.nameless.files import NO_SUCH_ADDON
 from kb_serve.recognise.resolving.chain_starts import ROOTS
 
 if TYPE_CHECKING:
@@ -27,6 +28,8 @@ _BROUGHT = (
     "Blender's Python has no `{name}`: an extension brings a package as a wheel, named in its manifest. A file of the "
     "add-on's own is imported from its folder, `from . import {name}`."
 )
+_ENABLED_BY = "bpy.ops.preferences.addon_enable"
+_ENABLING = "addon_enable("
 _HAS_FILE = "SELECT 1 FROM uses WHERE file = ? OR file LIKE ? LIMIT 1"
 
 
@@ -40,7 +43,10 @@ class Imports:
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds what other versions had of it."""
         for match in forms.first_matches(forms.NO_MODULE, query):
-            if not self.tell_if_gone(match["module"], recognition):
+            if _ENABLING in query:  # which names no package that a script lacks
+                recognition.add(_ENABLED_BY, 0.97, "error message")
+                recognition.notes.append(NO_SUCH_ADDON)
+            elif not self.tell_if_gone(match["module"], recognition):
                 self._tell_if_renamed(match["module"], recognition)
                 self._tell_how_brought(match["module"], recognition)
         for match in forms.first_matches(forms.NO_IMPORT, query):

@@ -10,6 +10,7 @@ from kb_build.symbols.api_names import COLLECTION, STRUCT, TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.messages.guides import EXTENSIONS
 from kb_serve.recognise.messages.labelled_nodes import sockets_of_labelled_nodes
+from kb_serve.recognise.messages.of_older import of_older
 from kb_serve.recognise.messages.parts_of_nodes import (
     nodes_called,
     on_called,
@@ -41,6 +42,11 @@ KEY_OF_SLOTS = (
     "for a slot that is shown as Cube."
 )
 _SLOTS = re.compile(r"(?<!\w)slots\[")
+_MODIFIERS = re.compile(r"\bmodifiers\[")
+_NO_MODIFIER = (
+    "The object has no modifier of that name: keep what `modifiers.new(…)` returns, or find it by its type, "
+    "`next((m for m in obj.modifiers if m.type == 'NODES'), None)`."
+)
 _ADDONS = re.compile(r"\baddons\[")
 _OF_ADDONS = (
     "`addons` has the add-ons that are enabled, each by the name of its module; that of an extension is "
@@ -87,6 +93,11 @@ class Keys:
                 "and `.keys()` tells which there are."
             )
             recognition.notes += (told for asked, told in self._of_collections if asked.search(query))
+            if _MODIFIERS.search(query):
+                recognition.notes.append(_NO_MODIFIER)
+            if any(one.written == name for one in recognition.corrections):  # a key is no name of Blender's
+                recognition.corrections = [one for one in recognition.corrections if one.written != name]
+                recognition.matches = [match for match in recognition.matches if match.why != "correction"]
             # What was looked into is there.
             within = re.findall(_LOOKED_INTO.format(re.escape(name)), query)
             gone = [one for one in recognition.removed if one.path.rpartition(".")[2] in within]
@@ -95,6 +106,8 @@ class Keys:
                 self._as_node(name, query, recognition)
         for rank, path in enumerate(sockets_of_labelled_nodes(name, query, self._reader)):
             recognition.add(path, 0.98 - 0.01 * rank, "error message")
+        there = [match.id for match in recognition.matches if match.id.endswith(f'["{name}"]')]
+        recognition.notes += filter(None, (of_older(path, self._reader) for path in there[:1]))
         if recognition.removed or any(match.sure >= 0.9 for match in recognition.matches):
             return
         if collection != _OF_COLLECTIONS:

@@ -30,6 +30,11 @@ _MOST_TAKING = 12  # operators with an argument of one name that are listed
 _NO_OPERATOR_NAMED = (
     "The message does not name the operator that was called: ask for that to see its arguments."
 )
+_TAKEN_HERE = (
+    "`{path}` takes `{name}` in Blender {version}: the message is of another Blender, or of another call."
+)
+_UNDO = "undo"
+_UNDO_BY_PLACE = "Whether an undo step is made is told by place: `{path}('EXEC_DEFAULT', True, …)`."
 _SHARED_NAME = "Several functions are called `{name}`: ask for the call as it was written."
 
 
@@ -71,6 +76,11 @@ class Keywords:
             if symbol.parameters or symbol.kind == "operator":
                 if removed := self._removed.of_part(symbol.path, f"({name})"):
                     recognition.add_removed(removed)
+                elif any(one.name == name for one in symbol.parameters):
+                    version = self._reader.meta.get("minor", "")
+                    recognition.notes.append(_TAKEN_HERE.format(path=symbol.path, version=version, name=name))
+                elif name == _UNDO and symbol.kind == "operator":
+                    recognition.notes.append(_UNDO_BY_PLACE.format(path=symbol.path))
                 else:
                     recognition.notes += unknown_keywords(symbol, {name: ""}, self._reader)
                 recognition.add(symbol.path, 0.9, "error message")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import words
 from kb_build.symbols.api_names import ID, TYPES
 from kb_serve.recognise.messages.context_members import note_on_absent
+from kb_serve.recognise.messages.of_older import of_older
 from kb_serve.recognise.names.corrections import is_misspelling
 from kb_serve.recognise.names.elements import elsewhere
 from kb_serve.recognise.names.members_within import members_within
@@ -31,6 +32,10 @@ _OWN_CLASS = (
     "What `invoke()` sets on `self` is not there where `execute()` is called alone."
 )
 _NOT_IMPORTED = "`{module}` is a module of its own, to be imported first: `import {module}`."
+_NOT_BLENDERS = (
+    "`import bpy` brings `{module}`: the `bpy` that was imported is not Blender's, but a package of stubs "
+    "(fake-bpy-module), or a file or folder of your own that is called `bpy`. `print(bpy.__file__)` tells."
+)
 _OF_INSTANCES = (
     "Instances of `{cls}` have `{name}`, the class has not. For `bpy.msgbus` the key is a pair: "
     '`({cls}, "{name}")`.'
@@ -68,7 +73,8 @@ class LackingOwners:
         module = self._reader.entry(f"{owner}.{name}") if owner else None
         if module and module.kind == "module":
             recognition.add(module.path, 0.98, "error message")
-            recognition.notes.append(_NOT_IMPORTED.format(module=module.path))
+            told = _NOT_BLENDERS if module.owner == "bpy" else _NOT_IMPORTED
+            recognition.notes.append(told.format(module=module.path))
             return
         removed = self._removed.of_member(owner, name) or self._removed.below(owner, name) if owner else None
         if removed is None and not self._reader.entry(TYPES + written):
@@ -79,6 +85,9 @@ class LackingOwners:
             removed = None if members_within(owner, name, self._reader) else removed
         if removed:
             recognition.add_removed(self._own_first(removed, owner))
+            now = removed.targets[0] if removed.targets else ""
+            if not owner and removed.path == f"{TYPES}{written}" and not self._reader.member_of(now, name):
+                recognition.missing.append(MissingName(name, now, sure=True))
         elif not owner and not of_module and written[:1].isupper() and written.isidentifier():
             self._own_class(written, name, recognition)
         elif owner and (member := self._reader.member_of(owner, name)):
@@ -93,6 +102,19 @@ class LackingOwners:
                 recognition.notes.append(other.how)
                 recognition.add(other.path, 0.98, "error message")
             self._of_its_block(owner, name, recognition)
+
+    def explain_class(self, name: str, recognition: Recognition) -> None:
+        """Adds a class that ``bpy.types`` of this Blender has, and that of a message has not."""
+        if (cls := self._reader.entry(f"{TYPES}{name}")) and (note := of_older(cls.path, self._reader)):
+            recognition.add(cls.path, 0.98, "error message")
+            recognition.notes.append(note)
+
+    def explain_elements(self, written: str, collection: str, name: str, recognition: Recognition) -> None:
+        """Adds what became of an attribute that the elements of a class's collection lack."""
+        owner = self._symbols.class_path(written, or_module=False)
+        held = self._reader.member_of(owner, collection) if owner else None
+        if held and held.target:
+            self.explain(held.target, name, recognition, of_module=False)
 
     def tell_of_instances(self, written: str, name: str, recognition: Recognition) -> bool:
         """Adds what a class's instances have, and the class itself has not; whether they have it."""
@@ -125,7 +147,7 @@ class LackingOwners:
         """A member that its class has, whatever the message says: of the context it is not there everywhere."""
         recognition.add(member.path, 0.97, "error message")
         symbol = self._reader.symbol(member.path) if member.kind == "context" else None
-        if symbol and (note := note_on_absent(symbol)):
+        if (symbol and (note := note_on_absent(symbol))) or (note := of_older(member.path, self._reader)):
             recognition.notes.append(note)
 
     def _own_first(self, removed: RemovedSymbol, owner: str) -> RemovedSymbol:

@@ -53,7 +53,10 @@ _ANYWHERE = (
         "An enumeration of flags takes a set of texts: `{'A'}`, `{'A', 'B'}`.",
     ),
 )
-_ONE_OF_SEVERAL = re.compile(r"item\.attr = val:\s*$")
+# Newer Blenders say nothing more, and the code that failed may follow.
+_ONE_OF_SEVERAL = re.compile(
+    r"item\.attr = val:\s*(?:$|sequence expected at dimension 1|[\w.]+(?:\[[^\]]*\])?[\w.\[\]\"']* = )"
+)
 _NOT_ONE = (
     "One value was given where several are wanted: a vector `(x, y, z)`, a colour `(r, g, b, a)`, as many as the "
     "property has."

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
 from kb_serve.recognise import message_patterns as forms
+from kb_serve.recognise.messages.of_older import of_older
 from kb_serve.recognise.names.node_names import add_nodes_meant, same_in_tree, tree_of_family
 
 if TYPE_CHECKING:
@@ -31,11 +32,18 @@ class NodeTypes:
                 recognition.add(symbol.path, _MEANT, "error message")
                 if not symbol.trees:
                     self._tell_of_no_tree(symbol.name, recognition)
+                elif note := of_older(symbol.path, self._reader):
+                    recognition.notes.append(note)
             else:
                 for removed in self._removed.spelled(match["type"]):
                     recognition.add_removed(removed)
                 if not recognition.removed:
                     add_nodes_meant(match["type"], _MEANT, self._reader, recognition)
+        for match in forms.first_matches(forms.NO_NODE_OF_TREE, query):
+            if symbol := self._reader.symbol(TYPES + match["type"]):
+                recognition.add(symbol.path, _MEANT, "error message")
+                trees = " or ".join(f"a `{tree}`" for tree in symbol.trees)
+                recognition.notes.append(f"`{match['type']}` is a node of {trees}: other trees refuse it.")
 
     def _tell_of_no_tree(self, name: str, recognition: Recognition) -> None:
         """Adds what the trees of its family take instead of a class of nodes that none takes."""

@@ -15,6 +15,7 @@ from kb_serve.recognise.messages.absent import ANY, WEIGHTY, is_empty_when_new
 from kb_serve.recognise.messages.outside_areas import OF_AN_AREA, OUTSIDE, SPACE
 from kb_serve.recognise.resolving.bindings import with_bindings
 from kb_serve.recognise.resolving.chains import find_chains
+from kb_serve.recognise.resolving.variables import usual_classes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,6 +36,7 @@ TAKES_NO_MODIFIER = (
     "`obj.modifiers.new(…)` returns None, without an error, where an object of that type takes no such modifier: an "
     "empty, a light or a camera takes none at all, and a Grease Pencil object its own."
 )
+_OF_CONTEXT = frozenset({"bpy", "context", "C"})  # of which is told what it lacks where
 _IS_NONE = "The object before `.{name}`{of} is None: it does not exist (yet), or was not found."
 
 
@@ -53,7 +55,7 @@ class NoneBefore:
         the context gives, and look-ups by name. Where the code calls what gives None, that alone.
         """
         chains = with_bindings(query, find_chains(query))
-        if self._tell_of_call(name, chains, recognition):
+        if self._tell_of_call(name, chains, recognition) or self._tell_read(name, chains, recognition):
             return
         owners = {
             entry.owner.removeprefix(TYPES)
@@ -103,6 +105,47 @@ class NoneBefore:
                 recognition.notes.append(f"`{entry.path}` is None on what is new: set it, `{setting}`.")
         if self._is_of_an_area(likely, owners):
             recognition.notes.append(OUTSIDE)
+
+    def _read_in_code(self, name: str, chains: Sequence[Chain]) -> SymbolEntry | None:
+        """The pointer that the code reads ``.name`` of, on a variable: ``material`` of ``slot.material.name``; that of
+        what the variable is named after, else the one that counts most. None where it is no pointer, or never None.
+        """
+        for chain in chains:
+            steps = [step for step in chain.steps if step.kind == "attr"]
+            if chain.root in _OF_CONTEXT or len(steps) != len(chain.steps):
+                continue
+            for first, second in pairwise(steps):
+                if second.text != name:
+                    continue
+                pointers = [
+                    one
+                    for one in self._reader.by_name(first.text)
+                    if one.type == "pointer"
+                    and one.group != "ui"
+                    and not self._is_flagged(one, NEVER_NONE)
+                    and self._reader.member_of(f"{TYPES}{one.target}", name)
+                ]
+                owners = usual_classes(chain.root) if first is steps[0] else []
+                own = [one for one in pointers if one.owner in owners]
+                if found := self._reader.heaviest(own or pointers):
+                    return found[0]
+        return None
+
+    def _tell_read(self, name: str, chains: Sequence[Chain], recognition: Recognition) -> bool:
+        """Adds a pointer of the code that is None, and what fills it; whether there is one."""
+        held = self._read_in_code(name, chains)
+        if held is None:
+            return False
+        recognition.add(held.path, _IS_READ, "may be None")
+        recognition.notes.append(_IS_NONE.format(name=name, of=f", `{held.path}`,"))
+        if calls := self._fillers(held):
+            before = ", then ".join(f"`{call}`" for call in calls)
+            recognition.notes.append(f"`{held.path}` is None before {before}.")
+        elif setting := self._setting(held):
+            recognition.notes.append(f"Set it, `{setting}`, or test it before it is read.")
+        else:
+            recognition.notes.append(f"Test `.{held.name}` before it is read.")
+        return True
 
     def _is_of_an_area(self, likely: Sequence[SymbolEntry], owners: set[str]) -> bool:
         """Whether what may be None is what the context has in an area alone, or mostly what areas show has the name."""

@@ -38,6 +38,10 @@ _SAID = {
     "edit_image": "image",
     "edit_text": "text",
 }  # what messages call a member of the context
+_OF_ADDON = (
+    "`{operator}` is an add-on's, whose own `poll()` refused: mostly it wants an active object of some type, a "
+    "selection, or a mode. The add-on's documentation or code tells."
+)
 # Behind a poll that failed for another reason than the context.
 _SAYS_WHY = re.compile(r"[^.]*\bin background-mode")
 
@@ -64,6 +68,9 @@ class Operators:
                 )
                 add_guide(ON_OPERATORS, self._reader, recognition)
                 recognition.add(OVERRIDE, 0.82, "error message")
+            elif not self._reader.removed(match["path"]):
+                recognition.add(OVERRIDE, 0.82, "error message")
+                recognition.notes.append(_OF_ADDON.format(operator=match["path"]))
         for match in forms.first_matches(forms.WRONG_TYPE, query):
             if match["operator"]:
                 own = _DEFINED.get(match["wanted"], "bpy.props")  # an operator of the script's own

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.api_names import ID
+from kb_build.symbols.api_names import ID, TYPES
 from kb_build.symbols.records import ANIMATABLE
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.names.corrections import nearest
@@ -14,6 +14,13 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import Recognition
 
 _MOST_KINDS = 8  # of data-blocks, those that scripts use most
+
+
+# Property that takes no keys → what to key instead.
+_INSTEAD = {
+    f"{TYPES}Object.dimensions": " Animate `scale`.",
+    f"{TYPES}Camera.angle": " Animate `lens`.",
+}
 
 
 class PathsNotFound:
@@ -34,6 +41,14 @@ class PathsNotFound:
             if paths:
                 listed = ", ".join(f"`{path}`" for path in paths)
                 recognition.notes.append(f"What is animated has no `{name}`; closest: {listed}.")
+        for match in forms.first_matches(forms.NOT_ANIMATED, query):
+            named = [one for one in self._reader.by_name(match["name"]) if one.kind == "property"]
+            still = [one for one in self._reader.heaviest(named) if not self._is_animated(one.path)]
+            for property_ in still[:1]:
+                recognition.add(property_.path, 0.97, "error message")
+                recognition.notes.append(
+                    f"`{property_.path}` cannot be animated.{_INSTEAD.get(property_.path, '')}"
+                )
 
     def _like(self, cls: str, name: str) -> list[str]:
         names = self._reader.member_names(cls)

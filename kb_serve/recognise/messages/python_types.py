@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.api_names import CONTEXT, HANDLERS
 from kb_serve.recognise.messages.absent import as_written
 
 if TYPE_CHECKING:
@@ -11,6 +12,10 @@ if TYPE_CHECKING:
     from kb_serve.recognise.messages.absent import Absent
     from kb_serve.recognise.recognition import Recognition
 
+_PATH_OF_FILE = (
+    "Where a context is expected the code has a text: `load_pre` and `load_post` call their handlers with the file's "
+    "path. Take `bpy.context.{name}` there."
+)
 PYTHONS = frozenset({"tuple", "list", "str", "dict", "set", "int", "float", "bool", "function", "method"})
 _VECTOR = "mathutils.Vector"
 
@@ -29,6 +34,10 @@ class PythonTypes:
             recognition.notes.append(
                 f"A {written} has no `.{name}`; a vector has: `mathutils.Vector(value).{name}`."
             )
+        elif written == "str" and self._reader.entry(f"{CONTEXT}.{name}"):
+            recognition.add(f"{CONTEXT}.{name}", 0.95, "error message")
+            recognition.add(f"{HANDLERS}load_post", 0.93, "error message")
+            recognition.notes.append(_PATH_OF_FILE.format(name=name))
         elif written == "str" and (member := self._absent.usual(name)):
             recognition.add(member.path, 0.95, "error message")
             if collection := self._absent.looked_up(member.owner):

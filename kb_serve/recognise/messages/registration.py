@@ -45,8 +45,16 @@ class Registration:
         for match in forms.first_matches(forms.NO_PROPERTY, query):
             recognition.add(f"bpy.props.{match['kind']}", 0.98, "error message")
             recognition.notes.append(
-                "The cause is the error that Blender printed before this one, on stderr."
+                "The cause is the error that Blender printed before this one, on stderr: mostly that the class in "
+                "`type` is not registered yet (`bpy.utils.register_class` comes first)."
             )
+        for match in forms.first_matches(forms.EXPECTED_MEMBER, query):
+            if entry := self._reader.entry(f"{TYPES}{match['base']}.{match['name']}"):
+                recognition.add(entry.path, 0.98, "error message")
+                how = "a function of that name" if entry.kind == "function" else f"`{entry.name} = …`"
+                recognition.notes.append(
+                    f"The class lacks `{entry.name}`, without which it is not registered: write {how} in it."
+                )
         for match in forms.first_matches(forms.NO_PARENT, query):
             recognition.add(f"{TYPES}Panel.bl_parent_id", 0.98, "error message")
             recognition.notes.append(

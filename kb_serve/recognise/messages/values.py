@@ -28,6 +28,9 @@ _NO_ITEM = "`{name}` is not an item of this enum; closest: {similar}."
 _LABELLED = "`{name}` is not an item of this enum; of that label: {items}."
 _TAKEN_BY = "`{name}` is a value of {owners}."
 _NOT_NOW = "`{name}` is a value of `{owner}`, which present data do not allow."
+_OTHER_VERSION = "Blender {version} takes `{name}` for `{owner}`: the message is another version's."
+_ONE_OF = "`{name}` is not an item of this enum, which has {items}."
+_MOST_ITEMS = 8  # that are listed
 _NEVER = "RNA lists `{name}` for `{owner}`, and no {thing} comes to have it.{instead}"
 _OF_OPERATORS = "to operator properties"
 _OF_PROPERTIES = "item.attr = val"
@@ -136,7 +139,19 @@ class Values:
             yield self._of_another_version(owner, name, items)
             yield self._enum_values.condition(owner, name)
             if self._enum_values.has(owner, name):
-                yield self._never_had(owner, name, items) or _NOT_NOW.format(name=name, owner=owner)
+                version = self._reader.meta.get("minor", "")
+                is_fixed = "(" in owner and not owner.startswith(OPERATORS)
+                yield self._never_had(owner, name, items) or (
+                    _OTHER_VERSION.format(name=name, owner=owner, version=version)
+                    if is_fixed
+                    else _NOT_NOW.format(name=name, owner=owner)
+                )
+            spelled = [
+                item
+                for path, item, _ in self._reader.enum_owners(key(name))
+                if path == owner and item != name
+            ]
+            yield _NO_ITEM.format(name=name, similar=f"`{spelled[0]}`") if spelled else ""
             labelled = ", ".join(f"`{item}`" for item in self._labelled(owner, name, items)[:_FEW])
             yield labelled and _LABELLED.format(name=name, items=labelled)
         beside = ", ".join(f"`{other}`" for other in self._taking_beside(owners, name))
@@ -145,6 +160,8 @@ class Values:
         yield similar and _NO_ITEM.format(name=name, similar=similar)
         others = ", ".join(f"`{other}`" for other in self._taking_only(name)) if owners else ""
         yield others and _TAKEN_BY.format(name=name, owners=others)
+        if owners and len(items) <= _MOST_ITEMS:
+            yield _ONE_OF.format(name=name or "''", items=", ".join(f"`{item}`" for item in items))
 
     def _never_had(self, owner: str, name: str, items: Sequence[str]) -> str:
         """That nothing comes to have a value, as a property with the same items tells that Blender alone sets; empty

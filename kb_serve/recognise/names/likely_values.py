@@ -44,7 +44,7 @@ def likely_values(written: str, items: Sequence[str]) -> list[str]:
     most like it, those that it begins with, or the other way round, or else those that it is made of and more.
     """
     written = _MINUS.sub("NEGATIVE_", written)
-    if same := same_elsewhere(written, items):
+    if same := same_elsewhere(written, items) or _of_same_letters(written, items):
         return same
     if same := _of_same_sense(written, items):
         return same
@@ -61,6 +61,11 @@ def likely_values(written: str, items: Sequence[str]) -> list[str]:
         return similar
     own = set(words(written))
     return sorted((item for item in items if set(words(item)) <= own), key=len, reverse=True)[:1]
+
+
+def _of_same_letters(written: str, items: Sequence[str]) -> list[str]:
+    """The items that are spelled otherwise alone: ``EVENT_BACKSLASH`` for ``EVENT_BACK_SLASH``."""
+    return [item for item in items if key(item) == key(written)]
 
 
 def _with_alike(said: str, similar: list[str], items: Iterable[str]) -> list[str]:

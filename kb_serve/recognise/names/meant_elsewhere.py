@@ -59,6 +59,13 @@ MEANT_ELSEWHERE = {
     f"{T}GreasePencilDrawing.points": MeantElsewhere(
         f"{T}GreasePencilDrawing.strokes", "Each stroke has its points: `drawing.strokes[0].points`."
     ),
+    f"{T}ImageStrip.filepath": MeantElsewhere(
+        f"{T}ImageStrip.elements",
+        "An image strip has a folder and a file for each frame: `strip.directory + strip.elements[0].filename`.",
+    ),
+    f"{T}Context.depsgraph": MeantElsewhere(
+        f"{T}Context.evaluated_depsgraph_get", "`bpy.context.evaluated_depsgraph_get()` gives it, up to date."
+    ),
     f"{T}Keyframe.frame": _OF_KEYFRAME,
     f"{T}Keyframe.value": _OF_KEYFRAME,
     f"{T}RenderSettings.samples": MeantElsewhere(

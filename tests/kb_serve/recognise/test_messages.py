@@ -668,7 +668,7 @@ def test_a_key_of_the_node_at_hand_is_one_that_it_lost(kb: KnowledgeBase, query:
             'TypeError: ActionStrips.new(): error with keyword argument "type" - enum "CLIP" not found in '
             "('KEYFRAME')",
             "bpy.types.ActionStrips.new",
-            [],
+            ["`CLIP` is not an item of this enum, which has `KEYFRAME`."],
         ),
         (
             'TypeError: BlendDataNodeTrees.new(): error with argument 2, "type" - enum "GeometryNodes" not found in '

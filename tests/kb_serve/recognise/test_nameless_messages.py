@@ -181,12 +181,36 @@ bpy.types.SpaceView3D.draw_handler_remove(None, "WINDOW")
 bpy.data.images.new("i", 8, 8).pixels.foreach_get(numpy.empty(256))
 bpy.data.images.new("i", 8, 8).pixels.foreach_set([0.0] * 3)
 stored()
+range(1.5)
+(lambda scene, depsgraph: None)(scene)
+x, y = ob.location
+bpy.ops.object.select_all("SELECT")
+ob.name = None
+ob["a" * 70] = 1
+bpy.data.images.new("i", 8, 8).pixels[:] = [0.0] * 255
+bpy.data.images.new("i", 8, 8).pixels = [0.0]
+mesh.polygons[0].vertices = [0, 1]
+ob.material_slots["x", 1]
+mesh.materials[0] = "m"
+ob.location[:] = (1, 2)
+ob.matrix_world[0] = (1, 2, 3)
+ob.location[3] = 1
+mesh.normals_split_custom_set([(0, 0, 1)])
+locked()
+chosen(items=lambda self, context: [("A", "A", "")], default="A")
+chosen(items=[("A", "A", "")], default="B")
+registered("UIList", name="plain", bl_label=None)
+registered("Header", name="header", bl_space_type="VIEW_3D")
+registered("Operator", bl_idname=3)
+enabled("older", blender_version_max="4.2.1")
+enabled("empty", is_whole=False)
 bpy.context.preferences.addons["cycles"].preferences.compute_device_type = "GPU"
 """.splitlines()
 _RUN = """
 import json, os, sys, tempfile
 import numpy
 import bpy, bmesh, mathutils
+import addon_utils
 import _bpy_restrict_state
 
 def ngon():
@@ -273,6 +297,29 @@ def film():
     settings = scene.render.image_settings
     settings.media_type = "VIDEO"
     settings.file_format = "FFMPEG"
+
+def locked():
+    ob.keyframe_insert("location", frame=1)
+    ob.animation_data.action.layers[0].strips[0].channelbags[0].fcurves[0].lock = True
+    ob.keyframe_insert("location", index=0, frame=5)
+
+def chosen(**settings):
+    group = type("Group", (bpy.types.PropertyGroup,), {"__annotations__": {"p": bpy.props.EnumProperty(**settings)}})
+    bpy.utils.register_class(group)
+
+def enabled(name, is_whole=True, **manifest):
+    repos = bpy.context.preferences.extensions.repos
+    repository = repos.new(name="own", module="own", custom_directory=tempfile.mkdtemp())
+    folder = os.path.join(repository.directory, name)
+    os.makedirs(folder, exist_ok=True)
+    told = {"schema_version": "1.0.0", "id": name, "version": "1.0.0", "name": "x", "tagline": "x", "maintainer": "x",
+            "type": "add-on", "blender_version_min": "4.2.0", "license": ["SPDX:GPL-3.0-or-later"], **manifest}
+    with open(os.path.join(folder, "blender_manifest.toml"), "w") as file:
+        file.write("".join(f"{key} = {json.dumps(value)}\\n" for key, value in told.items()))
+    if is_whole:
+        open(os.path.join(folder, "__init__.py"), "w").close()
+    addon_utils.extensions_refresh()
+    bpy.ops.preferences.addon_enable(module=f"bl_ext.{repository.module}.{name}")
 
 def stored():
     for name, number in (("A", 1), ("B", 2)):

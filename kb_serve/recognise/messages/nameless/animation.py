@@ -7,6 +7,12 @@ from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
 ANIMATION = (
     NamelessMessage(
+        ("locked or sampled",),
+        (f"{T}FCurve.lock", f"{T}FCurve.modifiers", f"{T}FCurve.convert_to_keyframes"),
+        "The F-curve takes no keys: `fcurve.lock = False` unlocks it, `fcurve.convert_to_keyframes(start, end)` "
+        "makes keys of samples, and a modifier of it may stand in the way.",
+    ),
+    NamelessMessage(
         ('attribute "id_type" from "DriverTarget" is read-only',),
         (f"{T}DriverTarget.id_type", f"{T}DriverVariable.type"),
         "A variable of transforms, of a distance or of a rotation takes objects alone: leave `id_type` out, and set "

@@ -36,6 +36,11 @@ _KEPT = (f"{T}bpy_struct.id_properties_ensure", f"{T}bpy_struct.id_properties_ui
 _AS_TEXT = "Keep anything else as a text: `str(value)`, or `json.dumps(value)` and `json.loads(…)`."
 CUSTOM_PROPERTIES = (
     NamelessMessage(
+        ("the length of IDProperty names is limited to",),
+        (f"{T}bpy_struct.keys", f"{T}bpy_struct.get"),
+        "The name of a custom property has at most 63 bytes, in which a letter beyond ASCII takes two or more.",
+    ),
+    NamelessMessage(
         ("invalid id-property type ", " not supported"),
         _KEPT,
         "A custom property keeps a number, a text, bytes, a data-block, a list of numbers (no set), or a dictionary "

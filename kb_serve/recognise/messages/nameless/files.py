@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from kb_build.symbols.api_names import TYPES as T
+from kb_serve.recognise.messages.guides import EXTENSIONS
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
 # Of the two ways to read from another file.
@@ -10,6 +11,7 @@ _OPEN_FILE = (
     'What the open file holds is in `bpy.data` already: `bpy.data.objects["Cube"].copy()` makes another one.'
 )
 
+NO_SUCH_ADDON = "The add-on is not installed under that name; extensions are called `bl_ext.repository.name`."
 FILES = (
     NamelessMessage(
         ("Selected data-blocks are already assets",),
@@ -65,9 +67,20 @@ FILES = (
         "There is no such file where Blender looks.",
     ),
     NamelessMessage(
+        ("cause: module loaded with no associated file",),
+        ("bpy.ops.preferences.addon_enable", "bpy.utils.refresh_script_paths"),
+        "The add-on's folder has no `__init__.py` at its top: it may lie one folder further down.",
+    ),
+    NamelessMessage(
+        (" is incompatible (This Blender version (", "than the maximum version ("),
+        ("bpy.ops.preferences.addon_enable", EXTENSIONS),
+        "`blender_version_max` in the extension's `blender_manifest.toml` is the first Blender that it is not meant "
+        "for: raise it or leave it out, or install a newer one.",
+    ),
+    NamelessMessage(
         ("Add-on not loaded:", "No module named"),
         ("bpy.ops.preferences.addon_enable", "bpy.utils.refresh_script_paths"),
-        "The add-on is not installed under that name; extensions are called `bl_ext.repository.name`.",
+        NO_SUCH_ADDON,
     ),
     NamelessMessage(
         ("Cannot load from the current blend file",),

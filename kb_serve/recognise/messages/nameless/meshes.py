@@ -8,6 +8,24 @@ from kb_serve.recognise.messages.nameless.message import NamelessMessage
 _O = "bpy.ops.object."
 MESHES = (
     NamelessMessage(
+        ("re-sizing bpy_struct arrays isn't supported",),
+        (f"{T}bpy_prop_array", f"{T}Image.pixels"),
+        "Give as many values as the slice has: three for `color[:3]`, `width * height * channels` for "
+        "`image.pixels[:]`.",
+    ),
+    NamelessMessage(
+        ("Image.pixels: array length cannot be changed to ",),
+        (f"{T}Image.pixels",),
+        "An image has `width * height * channels` numbers, four channels for each pixel: "
+        "`image.pixels.foreach_set(array.ravel())` takes them from numpy.",
+    ),
+    NamelessMessage(
+        ("MeshPolygon.vertices: array length cannot be changed to ",),
+        (f"{T}Mesh.from_pydata", f"{T}MeshPolygon.vertices"),
+        "A face keeps its number of vertices: make the mesh anew (`mesh.clear_geometry()`, `mesh.from_pydata(…)`), or "
+        "change its faces in a BMesh.",
+    ),
+    NamelessMessage(
         ("faces.new(...): face already exists",),
         ("bmesh.types.BMFaceSeq.new", "bmesh.types.BMFaceSeq.get"),
         "One set of vertices has one face, in whatever order: `face = bm.faces.get(verts) or bm.faces.new(verts)`.",
@@ -44,13 +62,19 @@ MESHES = (
         ("sequence length mismatch given",),
         (f"{T}bpy_prop_collection.foreach_set", f"{T}bpy_prop_collection.foreach_get"),
         "It wants as many numbers as elements × values of each (3 for `co`); of none, add elements first "
-        "(`mesh.vertices.add(count)`).",
+        "(`mesh.vertices.add(count)`). In Edit Mode the elements of attributes and layers are none: leave it first.",
     ),
     NamelessMessage(
         ("internal error setting the array",),
         (f"{T}bpy_prop_collection.foreach_set",),
         "The list has fewer numbers than elements × values of each (3 for `co`), or, for an attribute's `data`, more; "
-        "rows count as one: give `array.ravel()`.",
+        "rows count as one: give `array.ravel()`. `mesh.from_pydata()` wants `(x, y, z)` for each vertex.",
+    ),
+    NamelessMessage(
+        ("Number of custom normals is not number of ",),
+        (f"{T}Mesh.normals_split_custom_set", f"{T}Mesh.normals_split_custom_set_from_vertices"),
+        "It wants a normal for each corner, `len(mesh.loops)`; `normals_split_custom_set_from_vertices` wants one for "
+        "each vertex.",
     ),
     NamelessMessage(
         ("couldn't access the py sequence",),

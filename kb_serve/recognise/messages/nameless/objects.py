@@ -9,6 +9,17 @@ _ANNOTATION = "ID type 'GREASEPENCIL' is not valid for an object"
 
 OBJECTS = (
     NamelessMessage(
+        ("is only valid for bpy.data collections, not ",),
+        (f"{T}BlendData",),
+        "Two values in brackets are a name and a library, and only collections of `bpy.data` take those: give one "
+        "name or one number.",
+    ),
+    NamelessMessage(
+        ("bpy_prop_collection[key] = value: invalid, expected a StructRNA type or None, not a str",),
+        (f"{T}IDMaterials.append", f"{T}BlendData.materials"),
+        'Give the thing itself, not its name: `mesh.materials[0] = bpy.data.materials["Wood"]`.',
+    ),
+    NamelessMessage(
         ("No Rigid Body World to ",),
         ("bpy.ops.rigidbody.world_add", f"{T}Scene.rigidbody_world"),
         "`bpy.ops.rigidbody.world_add()` makes the world of the scene; `bpy.ops.rigidbody.object_add()` makes one "
@@ -20,7 +31,7 @@ OBJECTS = (
         "Ask the evaluated object: `obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).evaluated_geometry()`.",
     ),
     NamelessMessage(
-        ("selected because it is not in View Layer",),
+        (" not in View Layer '",),
         (f"{T}Object.select_set", f"{T}CollectionObjects.link"),
         "The object is in no collection of the view layer: `scene.collection.objects.link(obj)` first.",
     ),

@@ -21,6 +21,35 @@ _OF_OPERATORS = (
     "`bpy.ops.mesh.primitive_cube_add()`, and in the next line `cube = bpy.context.object`."
 )
 PYTHON = (
+    NamelessMessage(
+        ("'float' object cannot be interpreted as an integer",),
+        (f"{T}Action.frame_range", f"{T}Scene.frame_set"),
+        "`range()` and indices take whole numbers: `int(value)`, `count // 2`. Frames of an action are floats: "
+        "`range(int(action.frame_range[0]), int(action.frame_range[1]) + 1)`.",
+    ),
+    NamelessMessage(
+        ("missing 1 required positional argument: 'depsgraph'",),
+        ("bpy.app.handlers", f"{T}Context.evaluated_depsgraph_get"),
+        "Some handlers are called with the scene alone: `def handler(scene, depsgraph=None):`, and in it "
+        "`depsgraph = depsgraph or bpy.context.evaluated_depsgraph_get()`.",
+    ),
+    NamelessMessage(
+        ("too many values to unpack (expected ",),
+        ("mathutils.Vector", "mathutils.Quaternion"),
+        "The right side has more parts than there are names: a location has three numbers (`x, y, z = "
+        "obj.location`), a colour four, and `vector.xy` two.",
+    ),
+    NamelessMessage(
+        ("expected a string enum in ('INVOKE_DEFAULT'",),
+        ("bpy.ops",),
+        "By place an operator takes only how it is run and whether it makes an undo step; all else is given by name: "
+        "`bpy.ops.object.select_all(action='SELECT')`.",
+    ),
+    NamelessMessage(
+        (" doesn't support None from string types",),
+        ("bpy.props.StringProperty",),
+        "A text takes no None: give an empty one, `''`.",
+    ),
     *(
         NamelessMessage((part,), (f"{T}Context.object", f"{T}Context.active_object"), _OF_OPERATORS)
         for part in ("'set' object has no attribute '", "'set' object is not subscriptable")

@@ -46,10 +46,40 @@ REGISTRATION = (
         "name.",
     ),
     NamelessMessage(
-        ("Registering operator class '", "invalid bl_idname '"),
+        ("contain '_UL_' with prefix",),
+        (f"{T}UIList.bl_idname",),
+        "The `bl_idname` of a list, or its class's name where it has none, is like `MY_UL_list`: capitals, `_UL_`, a "
+        "name.",
+    ),
+    NamelessMessage(
+        ("contain '_HT_' with prefix",),
+        (f"{T}Header.bl_idname",),
+        "The `bl_idname` of a header, or its class's name where it has none, is like `MY_HT_header`: capitals, `_HT_`, "
+        "a name.",
+    ),
+    NamelessMessage(
+        ("validating class: ", " expected a string type, not "),
+        (f"{T}Operator.bl_idname", f"{T}Panel.bl_idname"),
+        'It is a text that stands in the class, as `bl_idname = "object.my_tool"`: no method, no property, and no '
+        "other "
+        "value.",
+    ),
+    NamelessMessage(
+        ("EnumProperty(", "when 'items' is a function"),
+        ("bpy.props.EnumProperty",),
+        "The texts of `items` are known only when the function is called: give the number of an item as `default`, or "
+        "leave it out.",
+    ),
+    NamelessMessage(
+        ("EnumProperty(", "not found in enum members"),
+        ("bpy.props.EnumProperty",),
+        "`default` is the identifier of one of `items`, the first text of its tuple; with `'ENUM_FLAG'` a set of them.",
+    ),
+    NamelessMessage(
+        ("Registering operator class", "invalid bl_idname '"),
         (f"{T}Operator.bl_idname",),
-        "An operator's `bl_idname` is two names with one dot between, in small letters: "
-        '`bl_idname = "object.my_tool"`.',
+        "An operator's `bl_idname` is two names with one dot between, of small letters, digits and `_`, at most 60 "
+        'characters: `bl_idname = "object.my_tool"`.',
     ),
     NamelessMessage(
         ("CollectionProperty(...) expected an RNA type derived from ID Property Group",),

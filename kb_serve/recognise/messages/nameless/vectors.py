@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from kb_build.symbols.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
 _NO_FACTOR = (
@@ -18,6 +19,21 @@ _IS_ARRAY = (
     "`[obj.matrix_world @ Vector(corner) for corner in obj.bound_box]`."
 )
 VECTORS = (
+    NamelessMessage(
+        ("[begin:end] = [...]: sequence size is ",),
+        ("mathutils.Vector",),
+        "A slice takes as many numbers as it has: three for `location[:]`, two for `location[:2]` or `location.xy`.",
+    ),
+    NamelessMessage(
+        ("matrix[i] = value assignment: sequence length is ",),
+        ("mathutils.Matrix.translation", f"{T}Object.matrix_world"),
+        "A row of a matrix of 4 × 4 has four numbers. The place that it moves to is `matrix.translation = (x, y, z)`.",
+    ),
+    NamelessMessage(
+        ("vector[index] = x: assignment index out of range",),
+        ("mathutils.Vector",),
+        "A location or a scale has three numbers, `[0]` to `[2]`.",
+    ),
     NamelessMessage(
         ("multiplication: not supported between ", "'bpy_prop_array'"),
         ("mathutils.Vector", "mathutils.Matrix"),
