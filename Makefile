@@ -120,7 +120,7 @@ clean: ## Remove what was made here (knowledge bases live elsewhere and stay)
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # What runs inside Blender is checked against stubs of the installed bpy.
-$(STUBS): $(STAMP) $(wildcard kb_check/stubs/*.py kb_build/flow/*.py)
+$(STUBS): $(STAMP) $(wildcard kb_check/stubs/*.py kb_build/flow/*.py kb_build/flow/*/*.py)
 	@echo "Writing stubs of the installed bpy ..."
 	@mkdir -p .venv/stubs
 	@.venv/bin/simworlds kb build --no-pages --offline --out .venv/stubs/base.sqlite >.venv/stubs.log 2>&1 \

@@ -336,7 +336,7 @@ def _symbol_tables(
     that follow from these, and what settings depend on.
     """
     from kb_build.blender.access_paths import reached_expressions  # noqa: PLC0415 - not when nothing changed
-    from kb_build.flow.symbols import SymbolList  # noqa: PLC0415 - loaded ahead
+    from kb_build.flow.blender.symbols import SymbolList  # noqa: PLC0415 - loaded ahead
     from kb_build.panels.conditions import panel_conditions  # noqa: PLC0415 - not when nothing changed
     from kb_build.panels.gating import settled  # noqa: PLC0415 - loaded ahead
     from kb_build.panels.idle import idle_conditions  # noqa: PLC0415 - likewise

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from kb_build.flow.analysis import Analysis, analyse, analyse_files
-from kb_build.flow.api import Api
-from kb_build.flow.parse import too_long
-from kb_build.flow.symbols import MOST_KEPT, BaseSymbols
+from kb_build.flow.blender.api import Api
+from kb_build.flow.blender.symbols import MOST_KEPT, BaseSymbols
+from kb_build.flow.syntax.parse import too_long
 from kb_check.names.known import KnownNames
 from kb_check.registered.package import Package
 from kb_check.rule import all_rules, rule_named

@@ -10,7 +10,7 @@ import sqlite3
 import textwrap
 from typing import TYPE_CHECKING
 
-from kb_build.flow.parse import parsed
+from kb_build.flow.syntax.parse import parsed
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.paths import last_name
 from kb_check.beside import checker_beside

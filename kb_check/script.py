@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from functools import cached_property, wraps
 from typing import TYPE_CHECKING, TypeVar, cast
 
-from kb_build.flow.trees import walk
-from kb_build.flow.types import Instance
+from kb_build.flow.syntax.trees import walk
+from kb_build.flow.values.types import Instance
 from kb_check.findings import Edit, Span
 from kb_check.running.raised import raised_by
 from kb_check.text.source import split_lines
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Hashable, Iterator
 
     from kb_build.flow.analysis import Analysis
-    from kb_build.flow.api import Api
-    from kb_build.flow.types import Resolution, ResolutionKind, Type
+    from kb_build.flow.blender.api import Api
+    from kb_build.flow.values.types import Resolution, ResolutionKind, Type
     from kb_check.names.known import KnownNames
     from kb_check.registered.package import Package
 

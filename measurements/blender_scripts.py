@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.base_file import read_meta
 from kb_build.flow.analysis import analyse
-from kb_build.flow.api import Api
-from kb_build.flow.symbols import BaseSymbols
+from kb_build.flow.blender.api import Api
+from kb_build.flow.blender.symbols import BaseSymbols
 from kb_build.usage.scripts import blender_scripts, read_script
 from simworlds.releases import version_key
 

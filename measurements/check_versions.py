@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from bench.markdown_tables import Table
-from kb_build.flow.types import Instance
+from kb_build.flow.values.types import Instance
 from kb_build.usage.scripts import read_script
 from kb_check.checker import Checker
 from kb_check.migrate.place import version_of
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from kb_build.flow.types import Resolution
+    from kb_build.flow.values.types import Resolution
     from kb_check.checker import Read
     from measurements.setting import Setting
 

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
-from kb_build.flow.symbols import BaseSymbols
+from kb_build.flow.blender.symbols import BaseSymbols
 from kb_build.symbols.records import READ_ONLY
 from kb_build.usage.scripts import blender_scripts, read_script
 from kb_check.checker import Checker

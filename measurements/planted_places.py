@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.flow.symbols import Symbols
+    from kb_build.flow.blender.symbols import Symbols
     from kb_build.symbols.records import Parameter, Symbol
 
 _T = "bpy.types."

@@ -9,7 +9,7 @@ from contextlib import closing
 from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
-from kb_build.flow.types import UNKNOWN
+from kb_build.flow.values.types import UNKNOWN
 from kb_build.schema import open_read_only
 from kb_build.usage.scripts import blender_scripts, read_script
 from measurements.blender_scripts import reading, scripts_folder, why_none

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from itertools import takewhile
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import NARROWER
+from kb_build.flow.blender.facts import NARROWER
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.lineages import lineage
 from kb_build.symbols.lines import of_evaluated

@@ -6,20 +6,20 @@ import ast
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from kb_build.flow.calls import Calls
-from kb_build.flow.functions import Functions
-from kb_build.flow.other_versions import doubt_what_others_use
-from kb_build.flow.parse import parsed, too_long
-from kb_build.flow.source_files import SourceFile, keeps_annotations, module_name
-from kb_build.flow.statements import Statements
-from kb_build.flow.trees import nodes_in
+from kb_build.flow.calls.dispatch import Calls
+from kb_build.flow.execution.functions import Functions
+from kb_build.flow.execution.statements import Statements
+from kb_build.flow.state.other_versions import doubt_what_others_use
+from kb_build.flow.state.source_files import SourceFile, keeps_annotations, module_name
+from kb_build.flow.syntax.parse import parsed, too_long
+from kb_build.flow.syntax.trees import nodes_in
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
 
-    from kb_build.flow.api import Api
-    from kb_build.flow.core import Reader
-    from kb_build.flow.types import Given, Resolution, Type
+    from kb_build.flow.blender.api import Api
+    from kb_build.flow.state.core import Reader
+    from kb_build.flow.values.types import Given, Resolution, Type
 
 MOST_STEPS = 4_000_000  # expressions that are read, some more than once
 _STEPS_PER_CHARACTER = 4

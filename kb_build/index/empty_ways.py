@@ -6,7 +6,7 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import NARROWER
+from kb_build.flow.blender.facts import NARROWER
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.flags import empty_when_new
 from kb_build.symbols.lineages import lineage

@@ -13,7 +13,7 @@ from kb_build.symbols.records import READ_ONLY, SettingCondition
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from kb_build.flow.symbols import Symbols
+    from kb_build.flow.blender.symbols import Symbols
     from kb_build.panels.gating import Gating
     from kb_build.symbols.records import Symbol
 

@@ -11,8 +11,8 @@ import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import children, walk
-from kb_build.flow.types import UNKNOWN, Instance, literal_texts
+from kb_build.flow.syntax.trees import children, walk
+from kb_build.flow.values.types import UNKNOWN, Instance, literal_texts
 from kb_build.panels.expressions import Conditions, Held, Script, is_unknown
 from kb_build.panels.formulas import FALSE, TRUE, Formula, all_of, chosen, either_of, is_large, negated
 from kb_build.symbols.api_names import OPERATORS
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from kb_build.flow.analysis import Analysis
-    from kb_build.flow.symbols import Symbols
+    from kb_build.flow.blender.symbols import Symbols
 
 _LAYOUT = "bpy.types.UILayout"
 _STATES = ("active", "enabled")

@@ -6,7 +6,7 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Plain, Sequence, Tuple, literal, members
+from kb_build.flow.values.types import Plain, Sequence, Tuple, literal, members
 from kb_build.panels.formulas import (
     FALSE,
     TRUE,
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from kb_build.flow.analysis import Analysis
-    from kb_build.flow.symbols import Symbols
-    from kb_build.flow.types import Type
+    from kb_build.flow.blender.symbols import Symbols
+    from kb_build.flow.values.types import Type
 
 _YES = frozenset({TRUE_VALUE})
 # What the truth of a value says, by the type of its property.

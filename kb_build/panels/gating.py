@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from kb_build.flow.facts import DISCRIMINANTS
+from kb_build.flow.blender.facts import DISCRIMINANTS
 from kb_build.panels.formulas import All, Answer, Clause, Clauses, Need, Question, common, consequences
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.records import READ_ONLY
@@ -13,7 +13,7 @@ from kb_build.symbols.records import READ_ONLY
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from kb_build.flow.symbols import Symbols
+    from kb_build.flow.blender.symbols import Symbols
     from kb_build.panels.drawing import Place
     from kb_build.panels.formulas import Formula
     from kb_build.symbols.records import Symbol

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from kb_build.flow.analysis import analyse
-from kb_build.flow.trees import children
-from kb_build.flow.types import (
+from kb_build.flow.syntax.trees import children
+from kb_build.flow.values.types import (
     UNKNOWN,
     ClassObject,
     Function,
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_build.flow.analysis import Analysis
-    from kb_build.flow.api import Api
+    from kb_build.flow.blender.api import Api
     from kb_build.symbols.records import SettingCondition
 
 MOST_EXAMPLES = 3  # of one symbol

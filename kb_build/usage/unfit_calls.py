@@ -9,7 +9,7 @@ from kb_build.symbols.api_names import TYPES
 
 if TYPE_CHECKING:
     from kb_build.flow.analysis import Analysis
-    from kb_build.flow.symbols import Symbols
+    from kb_build.flow.blender.symbols import Symbols
     from kb_build.symbols.records import Symbol
 
 

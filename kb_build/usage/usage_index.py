@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.fingerprint import usage_digest
 from kb_build.flow.analysis import analyse
-from kb_build.flow.api import Api
-from kb_build.flow.symbols import SymbolList
+from kb_build.flow.blender.api import Api
+from kb_build.flow.blender.symbols import SymbolList
 from kb_build.panels import gating
 from kb_build.panels.drawing import places_in, shows_something
 from kb_build.usage.examples import Example, Uses, analysed_uses, uses_in

@@ -7,7 +7,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import LOST_MODULES
+from kb_build.flow.blender.facts import LOST_MODULES
 from kb_build.index.analysis import key, short_path
 from kb_build.symbols.api_names import interface_part
 from kb_build.symbols.paths import item_of, socket_name, socket_side, split_path

@@ -8,7 +8,7 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import walk
+from kb_build.flow.syntax.trees import walk
 from kb_check.modes.keeping import is_harmless, own_names
 from kb_check.script import once_for_each, once_per_script
 from kb_check.syntax.bindings import bindings

@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import ClassObject, Function, NoneValue, Operator, members
+from kb_build.flow.values.types import ClassObject, Function, NoneValue, Operator, members
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.records import RETURNS_NONE
 from kb_check.findings import Edit, Span
@@ -19,7 +19,7 @@ from kb_serve.signatures import signature_arguments
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.flow.types import Type
+    from kb_build.flow.values.types import Type
     from kb_build.symbols.records import Parameter, Symbol
     from kb_check.script import Script
 

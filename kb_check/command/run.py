@@ -7,7 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from kb_build.flow.parse import too_long
+from kb_build.flow.syntax.parse import too_long
 from kb_check.command.project import LoadedFile
 from kb_check.command.report import FileReport, Report
 from kb_check.text.fixes import apply_fixes, print_diff, write_fixed

@@ -7,7 +7,7 @@ from bisect import bisect_right
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import children
+from kb_build.flow.syntax.trees import children
 from kb_check.findings import Edit, Span
 
 if TYPE_CHECKING:

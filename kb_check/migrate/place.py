@@ -8,8 +8,8 @@ from collections import defaultdict
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import children, walk
-from kb_build.flow.types import Instance, members, without_none
+from kb_build.flow.syntax.trees import children, walk
+from kb_build.flow.values.types import Instance, members, without_none
 from kb_check.findings import Edit, Span
 from kb_check.migrate.change import Change, Version
 from kb_check.syntax.bodies import bodies_of
@@ -17,7 +17,7 @@ from kb_check.syntax.bodies import bodies_of
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from kb_build.flow.types import Resolution
+    from kb_build.flow.values.types import Resolution
     from kb_check.findings import Finding
     from kb_check.script import Script
 

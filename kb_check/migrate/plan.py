@@ -6,7 +6,7 @@ import ast
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import walk
+from kb_build.flow.syntax.trees import walk
 from kb_build.symbols.paths import as_code, is_socket, last_name
 from kb_check.findings import Finding, Span
 from kb_check.migrate.change import Change, Decision, Done

@@ -6,7 +6,7 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import READ_ACTIVE, SET_ACTIVE
+from kb_build.flow.blender.facts import READ_ACTIVE, SET_ACTIVE
 from kb_check.calls.resolved import member_path
 from kb_check.calls.sites import calls
 from kb_check.modes.state import Absence, State

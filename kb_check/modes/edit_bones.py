@@ -9,8 +9,8 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import children, walk
-from kb_build.flow.types import Instance
+from kb_build.flow.syntax.trees import children, walk
+from kb_build.flow.values.types import Instance
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.resolved import callee_path
 from kb_check.calls.sites import calls_by_node

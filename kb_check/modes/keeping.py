@@ -6,8 +6,8 @@ import ast
 import builtins
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import SET_ACTIVE
-from kb_build.flow.trees import APART, children
+from kb_build.flow.blender.facts import SET_ACTIVE
+from kb_build.flow.syntax.trees import APART, children
 from kb_check.calls.sites import calls_by_node
 from kb_check.running.computing import CALLING, RUNNING, STORING
 from kb_check.running.out_of_sight import knows_all

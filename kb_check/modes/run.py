@@ -13,8 +13,8 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import children, walk
-from kb_build.flow.types import Mapping
+from kb_build.flow.syntax.trees import children, walk
+from kb_build.flow.values.types import Mapping
 from kb_check.calls.sites import calls, calls_by_node
 from kb_check.modes.absence import active_reads, lines_without_active, without_active
 from kb_check.modes.edit_bones import names_in

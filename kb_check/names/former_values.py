@@ -16,7 +16,7 @@ from kb_serve.recognise.names.likely_values import value_there
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kb_build.flow.types import Resolution
+    from kb_build.flow.values.types import Resolution
     from kb_check.script import Script
 
 _COLOR = 4  # numbers of a colour's socket

@@ -12,7 +12,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Collection, Instance, Plain, Sequence, Tuple
+from kb_build.flow.values.types import Collection, Instance, Plain, Sequence, Tuple
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.sites import callee_of
 from kb_check.script import once_per_script
@@ -24,7 +24,7 @@ from kb_check.values.given import parameter_taker
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.flow.types import Type
+    from kb_build.flow.values.types import Type
     from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 

@@ -13,7 +13,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import UNKNOWN, Instance, literal_texts
+from kb_build.flow.values.types import UNKNOWN, Instance, literal_texts
 from kb_build.symbols.api_names import SIDES
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.resolved import called_operators

@@ -13,7 +13,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.flow.types import Instance
+from kb_build.flow.values.types import Instance
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import usual_default
 from kb_build.symbols.records import SHOWN_WHEN

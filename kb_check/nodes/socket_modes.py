@@ -12,7 +12,7 @@ from kb_build.symbols.records import HIDDEN, SHOWN_WHEN
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kb_build.flow.api import Api
+    from kb_build.flow.blender.api import Api
     from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Collection, Instance
+from kb_build.flow.values.types import Collection, Instance
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import last_name
 from kb_check.calls.sites import calls_by_node

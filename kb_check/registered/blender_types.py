@@ -13,7 +13,7 @@ from kb_build.symbols.records import MUST_HAVE
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.flow.api import Api
+    from kb_build.flow.blender.api import Api
     from kb_build.symbols.records import Symbol
 
 _WITH_PROPERTIES = (

@@ -6,8 +6,8 @@ import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import walk
-from kb_build.flow.types import ClassObject
+from kb_build.flow.syntax.trees import walk
+from kb_build.flow.values.types import ClassObject
 from kb_check.registered.blender_types import TYPES, callbacks, needs
 from kb_check.running.computing import NAMESPACES, RUNNING, STORING, computing
 from kb_check.script import once_per_script

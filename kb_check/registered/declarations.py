@@ -6,7 +6,7 @@ import ast
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import ClassObject
+from kb_build.flow.values.types import ClassObject
 from kb_build.symbols.api_names import ID
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.records import Symbol

@@ -9,16 +9,16 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import ADDONS
-from kb_build.flow.trees import walk
-from kb_build.flow.types import UNKNOWN, literal_texts
+from kb_build.flow.blender.facts import ADDONS
+from kb_build.flow.syntax.trees import walk
+from kb_build.flow.values.types import UNKNOWN, literal_texts
 from kb_build.symbols.api_names import TYPES as T
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
     from kb_build.flow.analysis import Analysis
-    from kb_build.flow.api import Api
+    from kb_build.flow.blender.api import Api
 
 # What enables an add-on → the argument that names it.
 _ENABLING = {

@@ -7,9 +7,9 @@ from functools import cached_property
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
-from kb_build.flow.core import ANY
-from kb_build.flow.source_files import module_name
-from kb_build.flow.trees import walk
+from kb_build.flow.state.core import ANY
+from kb_build.flow.state.source_files import module_name
+from kb_build.flow.syntax.trees import walk
 from kb_check.registered.foreign_addons import brought_addons, enables_any, foreign_addon
 from kb_check.registered.package_roots import package_root
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from kb_build.flow.analysis import Analysis
-    from kb_build.flow.api import Api
+    from kb_build.flow.blender.api import Api
 
 
 class Package:

@@ -6,8 +6,8 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import OF_OPERATOR
-from kb_build.flow.types import UNKNOWN, ClassObject, Instance, LocalInstance, Operator, members
+from kb_build.flow.blender.facts import OF_OPERATOR
+from kb_build.flow.values.types import UNKNOWN, ClassObject, Instance, LocalInstance, Operator, members
 from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.resolved import callee_path
@@ -22,7 +22,7 @@ from kb_check.values.given import Given, assigned
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.flow.types import Type
+    from kb_build.flow.values.types import Type
     from kb_check.registered.classes import OwnClass
     from kb_check.script import Script
 

@@ -23,7 +23,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.flow.trees import called_name, children
+from kb_build.flow.syntax.trees import called_name, children
 from kb_build.symbols.api_names import TYPES
 from kb_check.calls.resolved import callee_path
 from kb_check.calls.sites import callee_of

@@ -28,7 +28,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import NONE
+from kb_build.flow.values.types import NONE
 from kb_build.symbols.lines import IN_MODULE
 from kb_build.symbols.paths import last_name
 from kb_build.symbols.records import (

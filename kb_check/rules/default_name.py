@@ -24,7 +24,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Collection, Instance
+from kb_build.flow.values.types import Collection, Instance
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.sites import calls
 from kb_check.findings import Edit, Finding, Fix

@@ -44,7 +44,7 @@ from kb_check.syntax.words import asked_names, keywords_and_texts, named_words, 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Iterator
 
-    from kb_build.flow.types import Resolution
+    from kb_build.flow.values.types import Resolution
     from kb_check.findings import Severity
     from kb_check.running.read_pointers import PointerRead
     from kb_check.scene.emptied import What

@@ -24,7 +24,7 @@ import math
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Instance
+from kb_build.flow.values.types import Instance
 from kb_build.index.analysis import stem, words
 from kb_build.symbols.api_names import ID, OBJECT, OPERATORS
 from kb_build.symbols.api_names import TYPES as T

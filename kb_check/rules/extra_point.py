@@ -18,7 +18,7 @@ import ast
 from itertools import takewhile
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import walk
+from kb_build.flow.syntax.trees import walk
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.resolved import callee_path
 from kb_check.findings import Edit, Finding, Fix

@@ -15,7 +15,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import ADDONS
+from kb_build.flow.blender.facts import ADDONS
 from kb_check.calls.sites import calls
 from kb_check.findings import Finding
 from kb_check.rule import Rule

@@ -15,7 +15,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Collection, Instance
+from kb_build.flow.values.types import Collection, Instance
 from kb_check.findings import Finding, Fix
 from kb_check.rule import Rule
 from kb_check.running.tried import is_tried

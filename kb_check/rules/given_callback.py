@@ -29,8 +29,8 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import walk
-from kb_build.flow.types import (
+from kb_build.flow.syntax.trees import walk
+from kb_build.flow.values.types import (
     NONE,
     UNKNOWN,
     Builtin,

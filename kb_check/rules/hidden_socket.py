@@ -55,7 +55,7 @@ from kb_check.syntax.words import named_words
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.flow.types import Resolution
+    from kb_build.flow.values.types import Resolution
     from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.flow.parse import too_long
+from kb_build.flow.syntax.parse import too_long
 from kb_check.findings import Finding, Span
 from kb_check.rule import Rule
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Instance, literal_text
+from kb_build.flow.values.types import Instance, literal_text
 from kb_check.findings import Finding
 from kb_check.nodes.group_inputs import named_inputs
 from kb_check.rule import Rule

@@ -13,7 +13,7 @@ from kb_check.rules.renaming import renaming
 from kb_check.script import REGISTERED
 
 if TYPE_CHECKING:
-    from kb_build.flow.types import Resolution, ResolutionKind
+    from kb_build.flow.values.types import Resolution, ResolutionKind
     from kb_check.findings import Severity
     from kb_check.names.known import Lacking
     from kb_check.script import Script

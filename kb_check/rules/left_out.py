@@ -28,7 +28,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.flow.types import Instance
+from kb_build.flow.values.types import Instance
 from kb_build.symbols.accepted import ITSELF, TAKES, accepted, accepted_text, noun
 from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.api_names import TYPES as T

@@ -19,7 +19,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import NONE, UNKNOWN, Instance, Sequence, Tuple, Type, members
+from kb_build.flow.values.types import NONE, UNKNOWN, Instance, Sequence, Tuple, Type, members
 from kb_check.findings import Finding
 from kb_check.registered.handler_lists import handler_list
 from kb_check.rule import Rule

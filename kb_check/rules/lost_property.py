@@ -23,8 +23,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import walk
-from kb_build.flow.types import Function
+from kb_build.flow.syntax.trees import walk
+from kb_build.flow.values.types import Function
 from kb_check.calls.resolved import callee_path
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.registered.blender_types import MAKE_PROPERTIES

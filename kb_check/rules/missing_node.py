@@ -16,7 +16,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Instance
+from kb_build.flow.values.types import Instance
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.resolved import callee_path, member_path
 from kb_check.calls.sites import calls, calls_by_node

@@ -25,7 +25,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Builtin, Mapping, Operator
+from kb_build.flow.values.types import Builtin, Mapping, Operator
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import operator_areas, operator_given
 from kb_build.symbols.lines import area_text

@@ -28,7 +28,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import UNKNOWN, Instance, LocalInstance, members
+from kb_build.flow.values.types import UNKNOWN, Instance, LocalInstance, members
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.nodes.group_inputs import input_now

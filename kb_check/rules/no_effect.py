@@ -19,7 +19,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Builtin, Function, Instance, Plain, Sequence
+from kb_build.flow.values.types import Builtin, Function, Instance, Plain, Sequence
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.python_values import on_changing
 from kb_build.symbols.records import READ_ONLY

@@ -23,10 +23,10 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.api import ARRAY
-from kb_build.flow.facts import LAYER_ACCESS, LAYER_ITEM, LAYERS_OF, NODES_WITH_SOCKETS_OF_THEIR_OWN
-from kb_build.flow.trees import walk
-from kb_build.flow.types import (
+from kb_build.flow.blender.api import ARRAY
+from kb_build.flow.blender.facts import LAYER_ACCESS, LAYER_ITEM, LAYERS_OF, NODES_WITH_SOCKETS_OF_THEIR_OWN
+from kb_build.flow.syntax.trees import walk
+from kb_build.flow.values.types import (
     NONE,
     UNKNOWN,
     Collection,

@@ -16,7 +16,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import made_by
+from kb_build.flow.blender.facts import made_by
 from kb_check.calls.sites import calls_by_node
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.rule import Rule

@@ -20,7 +20,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Instance, Plain
+from kb_build.flow.values.types import Instance, Plain
 from kb_check.findings import Finding, Fix
 from kb_check.rule import Rule
 

@@ -25,8 +25,8 @@ import ast
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
-from kb_build.flow.core import ANY
-from kb_build.flow.types import UNKNOWN, Instance, LocalInstance, literal_texts, members
+from kb_build.flow.state.core import ANY
+from kb_build.flow.values.types import UNKNOWN, Instance, LocalInstance, literal_texts, members
 from kb_check.findings import Finding, Fix
 from kb_check.names.known import listed
 from kb_check.registered.properties import LAYOUT, own_properties, uses

@@ -28,7 +28,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import (
+from kb_build.flow.values.types import (
     NONE,
     UNKNOWN,
     Mapping,

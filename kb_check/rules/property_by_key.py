@@ -17,7 +17,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import UNKNOWN, ClassObject, Instance, members
+from kb_build.flow.values.types import UNKNOWN, ClassObject, Instance, members
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.resolved import callee_path
 from kb_check.findings import Finding, Fix

@@ -20,7 +20,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Instance
+from kb_build.flow.values.types import Instance
 from kb_build.symbols.api_names import HANDLERS, TYPES
 from kb_build.symbols.flags import freed_by, is_locked
 from kb_build.symbols.records import FREE_ON, READ_ONLY
@@ -36,7 +36,7 @@ from kb_serve.recognise.changed_by import changed_by
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.flow.types import Resolution
+    from kb_build.flow.values.types import Resolution
     from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 

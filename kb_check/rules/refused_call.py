@@ -29,7 +29,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import UNKNOWN, ClassObject, Instance, LocalClass, members
+from kb_build.flow.values.types import UNKNOWN, ClassObject, Instance, LocalClass, members
 from kb_build.symbols.api_names import NODE, OBJECT, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.lines import with_article

@@ -33,8 +33,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import PRODUCTS
-from kb_build.flow.types import Instance
+from kb_build.flow.blender.facts import PRODUCTS
+from kb_build.flow.values.types import Instance
 from kb_check.calls.sites import nothing_from, other_way
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.rule import Rule

@@ -23,7 +23,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import ClassObject
+from kb_build.flow.values.types import ClassObject
 from kb_build.symbols.api_names import ID
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.records import RNA_TYPES, RUNTIME

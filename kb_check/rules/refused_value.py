@@ -57,7 +57,7 @@ from kb_check.syntax.words import named_words
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from kb_build.flow.types import Resolution
+    from kb_build.flow.values.types import Resolution
     from kb_build.symbols.records import EnumItem, NewValue, Parameter, Symbol
     from kb_check.findings import Severity
     from kb_check.script import Script

@@ -31,8 +31,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import children
-from kb_build.flow.types import ClassObject, Instance, LocalClass
+from kb_build.flow.syntax.trees import children
+from kb_build.flow.values.types import ClassObject, Instance, LocalClass
 from kb_build.symbols.api_names import ID, OPERATORS, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.resolved import callee_path

@@ -31,7 +31,7 @@ import ast
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Instance, Sequence, Tuple, Type
+from kb_build.flow.values.types import Instance, Sequence, Tuple, Type
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.resolved import called_operators, member_path
 from kb_check.calls.sites import calls_by_node

@@ -10,8 +10,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import walk
-from kb_build.flow.types import UNKNOWN, Module, Plain, members
+from kb_build.flow.syntax.trees import walk
+from kb_build.flow.values.types import UNKNOWN, Module, Plain, members
 from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.paths import item_of, split_path
 from kb_build.symbols.records import READ_ONLY
@@ -26,7 +26,7 @@ from kb_check.values.given import assigned, property_taker
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.flow.types import Resolution
+    from kb_build.flow.values.types import Resolution
     from kb_build.symbols.records import Parameter, Symbol
     from kb_check.names.known import Lacking
     from kb_check.script import Script

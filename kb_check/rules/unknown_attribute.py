@@ -27,8 +27,8 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import walk
-from kb_build.flow.types import UNKNOWN, Plain, members
+from kb_build.flow.syntax.trees import walk
+from kb_build.flow.values.types import UNKNOWN, Plain, members
 from kb_build.symbols.api_names import BLEND_DATA, CONTEXT, OBJECT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.object_data import OBJECT_DATA
@@ -44,14 +44,14 @@ from kb_check.running.tried import is_tried
 from kb_check.syntax.annotated import ONE_IS_WRONG, annotated
 from kb_check.syntax.bindings import bindings
 from kb_check.syntax.words import words_in_texts
-from kb_serve.recognise.names.elements import Elsewhere, elsewhere
-from kb_serve.recognise.names.holders import by_what_holds_it, of_collection
-from kb_serve.recognise.names.members_within import members_within
+from kb_serve.recognise.names.elsewhere.elements import Elsewhere, elsewhere
+from kb_serve.recognise.names.elsewhere.holders import by_what_holds_it, of_collection
+from kb_serve.recognise.names.elsewhere.members_within import members_within
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.flow.types import Resolution
+    from kb_build.flow.values.types import Resolution
     from kb_check.names.known import Lacking
     from kb_check.script import Script
 

@@ -25,7 +25,7 @@ from kb_check.values.given import assigned
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.flow.types import Resolution
+    from kb_build.flow.values.types import Resolution
     from kb_check.findings import Finding
     from kb_check.script import Script
 

@@ -18,7 +18,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import LOST_MODULES, UNLOADED
+from kb_build.flow.blender.facts import LOST_MODULES, UNLOADED
 from kb_check.calls.resolved import member_path
 from kb_check.findings import Finding
 from kb_check.rule import Rule
@@ -29,7 +29,7 @@ from kb_check.running.tried import is_tried
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.flow.types import Resolution
+    from kb_build.flow.values.types import Resolution
     from kb_check.names.known import Lacking
     from kb_check.script import Script
 

@@ -25,8 +25,8 @@ import re
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import CLASS_NAMES
-from kb_build.flow.types import Instance
+from kb_build.flow.blender.facts import CLASS_NAMES
+from kb_build.flow.values.types import Instance
 from kb_build.index.analysis import key, words
 from kb_build.symbols.api_names import NODE
 from kb_build.symbols.api_names import TYPES as T

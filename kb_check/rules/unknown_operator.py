@@ -24,7 +24,7 @@ from kb_check.syntax.words import members_taken
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.flow.types import Resolution
+    from kb_build.flow.values.types import Resolution
     from kb_check.findings import Finding
     from kb_check.names.known import Lacking
     from kb_check.script import Script

@@ -32,7 +32,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Instance, Resolution
+from kb_build.flow.values.types import Instance, Resolution
 from kb_build.symbols.api_names import SIDES
 from kb_build.symbols.lines import subscripts_text
 from kb_build.symbols.records import NEVER_BY_IDENTIFIER, WHEN_PAIRED

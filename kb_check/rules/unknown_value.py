@@ -21,8 +21,8 @@ from dataclasses import replace
 from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
 
-from kb_build.flow.expressions import constants
-from kb_build.flow.types import UNKNOWN, Resolution, literal_text
+from kb_build.flow.evaluation.expressions import constants
+from kb_build.flow.values.types import UNKNOWN, Resolution, literal_text
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import NODE_FAMILIES, never_taken
 from kb_build.symbols.paths import argument_of, last_name, plain_path, split_path

@@ -25,8 +25,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import SET_ACTIVE
-from kb_build.flow.types import Instance
+from kb_build.flow.blender.facts import SET_ACTIVE
+from kb_build.flow.values.types import Instance
 from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.resolved import callee_path, member_path

@@ -15,7 +15,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import UNKNOWN, Plain, Tuple, members
+from kb_build.flow.values.types import UNKNOWN, Plain, Tuple, members
 from kb_check.calls.resolved import member_path
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule

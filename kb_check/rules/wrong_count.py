@@ -16,7 +16,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import NONE, UNKNOWN, Plain, Tuple, members
+from kb_build.flow.values.types import NONE, UNKNOWN, Plain, Tuple, members
 from kb_check.calls.sites import calls
 from kb_check.findings import Finding
 from kb_check.rule import Rule
@@ -26,7 +26,7 @@ from kb_check.values.misfits import describe
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.flow.types import Type
+    from kb_build.flow.values.types import Type
     from kb_build.symbols.records import Symbol
     from kb_check.calls.sites import CallSite
     from kb_check.script import Script

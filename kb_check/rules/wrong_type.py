@@ -36,7 +36,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Collection, Instance, Plain
+from kb_build.flow.values.types import Collection, Instance, Plain
 from kb_build.symbols.api_names import GROUPS, ID, NODE, OBJECT, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.object_data import OBJECT_DATA

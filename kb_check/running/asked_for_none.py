@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import walk
+from kb_build.flow.syntax.trees import walk
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:

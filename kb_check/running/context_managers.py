@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import called_name
+from kb_build.flow.syntax.trees import called_name
 
 if TYPE_CHECKING:
     import ast

@@ -7,7 +7,7 @@ import builtins
 import sys
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import walk
+from kb_build.flow.syntax.trees import walk
 from kb_check.calls.resolved import callee_path
 from kb_check.running.computing import RUNNING, STORING, computing
 from kb_check.script import once_per_script

@@ -5,12 +5,12 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import walk
+from kb_build.flow.syntax.trees import walk
 from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.api_names import TYPES as T
 
 if TYPE_CHECKING:
-    from kb_build.flow.types import Resolution, ResolutionKind
+    from kb_build.flow.values.types import Resolution, ResolutionKind
 
 _MODULE = "bpy.ops"
 LACKS = ("AttributeError",)

@@ -13,9 +13,9 @@ import sys
 from bisect import bisect_right
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.flow.expressions import is_decided
-from kb_build.flow.trees import APART, called_name, children, run_with, walk
-from kb_build.flow.types import UNKNOWN, LocalClass, LocalFunction, literal
+from kb_build.flow.evaluation.expressions import is_decided
+from kb_build.flow.syntax.trees import APART, called_name, children, run_with, walk
+from kb_build.flow.values.types import UNKNOWN, LocalClass, LocalFunction, literal
 from kb_check.running.computing import RUNNING, STORING
 from kb_check.running.context_managers import passes_errors
 from kb_check.syntax.definitions import FunctionDefinition
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from kb_build.flow.analysis import Analysis
-    from kb_build.flow.types import Type
+    from kb_build.flow.values.types import Type
 
 
 # Names that can give Blender's API more than the text shows.

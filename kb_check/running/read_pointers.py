@@ -13,7 +13,7 @@ from kb_check.syntax.words import asked_names
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator
 
-    from kb_build.flow.types import Resolution
+    from kb_build.flow.values.types import Resolution
     from kb_check.script import Script
 
 

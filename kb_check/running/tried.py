@@ -6,7 +6,7 @@ import ast
 import builtins
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import UNKNOWN, Builtin, Tuple, catches, members
+from kb_build.flow.values.types import UNKNOWN, Builtin, Tuple, catches, members
 from kb_check.calls.resolved import callee_path
 from kb_check.running.context_managers import passes_errors
 from kb_check.running.line_ranges import LineRanges

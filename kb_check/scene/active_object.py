@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import READ_ACTIVE, made_by
+from kb_build.flow.blender.facts import READ_ACTIVE, made_by
 from kb_check.calls.resolved import callee_path
 
 if TYPE_CHECKING:

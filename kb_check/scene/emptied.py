@@ -8,7 +8,7 @@ import ast
 from collections import Counter
 from typing import TYPE_CHECKING, Literal
 
-from kb_build.flow.trees import children, walk
+from kb_build.flow.syntax.trees import children, walk
 from kb_check.calls.resolved import callee_path
 from kb_check.scene.deleted import deleting_all, deleting_selected
 from kb_check.script import once_for_each, once_per_script

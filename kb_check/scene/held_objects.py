@@ -10,7 +10,7 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import SET_ACTIVE, made_by
+from kb_build.flow.blender.facts import SET_ACTIVE, made_by
 from kb_build.symbols.api_names import ID, OBJECT
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.resolved import callee_path, member_path

@@ -7,8 +7,8 @@ import math
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import made_by
-from kb_build.flow.types import Instance
+from kb_build.flow.blender.facts import made_by
+from kb_build.flow.values.types import Instance
 from kb_build.symbols.api_names import ID, OBJECT
 from kb_build.symbols.flags import fillers
 from kb_check.calls.resolved import called_operators, callee_path, calls_only
@@ -18,7 +18,7 @@ from kb_check.syntax.bindings import bindings, once_bound
 from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
-    from kb_build.flow.types import Type
+    from kb_build.flow.values.types import Type
     from kb_check.script import Script
 
 _DEEPEST = 8

@@ -9,8 +9,8 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.flow.facts import ELEMENTS, LAYERS
-from kb_build.flow.types import Collection, Instance
+from kb_build.flow.blender.facts import ELEMENTS, LAYERS
+from kb_build.flow.values.types import Collection, Instance
 from kb_build.symbols.api_names import ID
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.resolved import callee_path

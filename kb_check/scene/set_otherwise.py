@@ -11,7 +11,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import walk
+from kb_build.flow.syntax.trees import walk
 from kb_check.calls.resolved import callee_path
 from kb_check.calls.sites import calls
 from kb_check.syntax.bindings import bindings

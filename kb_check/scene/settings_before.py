@@ -15,7 +15,7 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import walk
+from kb_build.flow.syntax.trees import walk
 from kb_build.symbols.api_names import OPERATORS
 from kb_check.calls.resolved import called_operators, callee_path
 from kb_check.calls.sites import calls_by_node

@@ -9,9 +9,9 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.api import ARRAY
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, ELEMENT, OPEN_CLASSES
-from kb_build.flow.types import (
+from kb_build.flow.blender.api import ARRAY
+from kb_build.flow.blender.facts import DERIVED_BY_SCRIPTS, ELEMENT, OPEN_CLASSES
+from kb_build.flow.values.types import (
     Collection,
     Instance,
     NoneValue,
@@ -27,7 +27,7 @@ from kb_check.stubs.enums import Enums, values_of
 from kb_check.stubs.python_protocols import GENERIC
 
 if TYPE_CHECKING:
-    from kb_build.flow.api import Api
+    from kb_build.flow.blender.api import Api
     from kb_build.symbols.records import Parameter, Symbol
     from kb_check.stubs.families import Families
 

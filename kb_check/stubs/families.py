@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES
+from kb_build.flow.blender.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES
 from kb_build.symbols.api_names import ID, NODE, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.object_data import OBJECT_DATA
@@ -17,7 +17,7 @@ from kb_build.symbols.object_data import OBJECT_DATA
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kb_build.flow.api import Api
+    from kb_build.flow.blender.api import Api
 
 MODULE = "bpy._families"
 OBJECT_DATA_FAMILY = f"{MODULE}.AnyObjectData"

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.flow.api import Api
-from kb_build.flow.symbols import SymbolList
-from kb_build.flow.types import Instance
+from kb_build.flow.blender.api import Api
+from kb_build.flow.blender.symbols import SymbolList
+from kb_build.flow.values.types import Instance
 from kb_build.symbols.api_names import TYPES as T
 from kb_check.stubs import enums, families, sockets
 from kb_check.stubs.annotations import ANY, Annotations

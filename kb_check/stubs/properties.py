@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.flow.api import ARRAY
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES
-from kb_build.flow.types import Instance, Sequence
+from kb_build.flow.blender.api import ARRAY
+from kb_build.flow.blender.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES
+from kb_build.flow.values.types import Instance, Sequence
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.records import NEVER_NONE, READ_ONLY, RNA_TYPES
 from kb_check.stubs.annotations import ANY, ITEMS, MAYBE_NONE
@@ -18,7 +18,7 @@ from kb_check.stubs.families import OBJECT_DATA_FAMILY
 from kb_check.stubs.names import docstring
 
 if TYPE_CHECKING:
-    from kb_build.flow.types import Type
+    from kb_build.flow.values.types import Type
     from kb_build.symbols.records import Symbol
     from kb_check.stubs.annotations import Annotations
 

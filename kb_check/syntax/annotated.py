@@ -6,8 +6,8 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import walk
-from kb_build.flow.types import LocalFunction
+from kb_build.flow.syntax.trees import walk
+from kb_build.flow.values.types import LocalFunction
 from kb_check.script import once_for_each
 from kb_check.syntax.literals import bound_names
 

@@ -6,7 +6,7 @@ import ast
 import re
 from dataclasses import dataclass
 
-from kb_build.flow.parse import parsed
+from kb_build.flow.syntax.parse import parsed
 from kb_check.text.source import split_lines
 
 _MOST_ROUNDS = 40

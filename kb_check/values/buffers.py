@@ -17,9 +17,9 @@ import ast
 from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.flow.api import ARRAY
-from kb_build.flow.facts import ELEMENT
-from kb_build.flow.types import FLOAT, Collection, Instance, Sequence, Tuple, Union, members
+from kb_build.flow.blender.api import ARRAY
+from kb_build.flow.blender.facts import ELEMENT
+from kb_build.flow.values.types import FLOAT, Collection, Instance, Sequence, Tuple, Union, members
 from kb_build.symbols.api_names import COLLECTION
 from kb_check.calls.resolved import callee_path
 from kb_check.syntax.bindings import once_bound
@@ -29,7 +29,7 @@ from kb_check.syntax.words import attributes
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from kb_build.flow.types import Type
+    from kb_build.flow.values.types import Type
     from kb_check.script import Script
 
 _FUNCTIONS = frozenset({"foreach_get", "foreach_set"})

@@ -20,8 +20,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import OF_OBJECT
-from kb_build.flow.types import (
+from kb_build.flow.blender.facts import OF_OBJECT
+from kb_build.flow.values.types import (
     NONE,
     Collection,
     Instance,

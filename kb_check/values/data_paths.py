@@ -10,8 +10,8 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES
-from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, Type, members
+from kb_build.flow.blender.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES
+from kb_build.flow.values.types import NONE, UNKNOWN, Collection, Instance, Type, members
 from kb_build.symbols.api_names import ID
 from kb_build.symbols.records import SCALAR_TYPES
 from kb_build.symbols.unlisted import SOMETIMES

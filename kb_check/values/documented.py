@@ -10,8 +10,8 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import ELEMENT, ELEMENTS, LAYER_ITEM
-from kb_build.flow.types import (
+from kb_build.flow.blender.facts import ELEMENT, ELEMENTS, LAYER_ITEM
+from kb_build.flow.values.types import (
     NONE,
     UNKNOWN,
     Instance,
@@ -31,7 +31,7 @@ from kb_check.syntax.literals import items, written
 from kb_check.values.misfits import Misfit, describe, shown
 
 if TYPE_CHECKING:
-    from kb_build.flow.types import Type
+    from kb_build.flow.values.types import Type
     from kb_check.script import Script
     from kb_check.values.given import Taker
 

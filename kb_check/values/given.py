@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, members
+from kb_build.flow.values.types import NONE, UNKNOWN, Collection, Instance, members
 from kb_build.symbols.api_names import STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import plain_path

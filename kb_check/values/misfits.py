@@ -6,11 +6,11 @@ import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Collection, Instance, Mapping, Module, Plain, Sequence, Tuple
+from kb_build.flow.values.types import Collection, Instance, Mapping, Module, Plain, Sequence, Tuple
 from kb_check.syntax.literals import number, written
 
 if TYPE_CHECKING:
-    from kb_build.flow.types import Type
+    from kb_build.flow.values.types import Type
     from kb_check.script import Script
 
 _LONGEST_SHOWN = 40

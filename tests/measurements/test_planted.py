@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.flow.symbols import BaseSymbols
+from kb_build.flow.blender.symbols import BaseSymbols
 from kb_check.checker import Checker
 from measurements.planted import KINDS, found, plant
 from measurements.planted_places import Places

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import ClassObject
+from kb_build.flow.values.types import ClassObject
 from kb_build.symbols.api_names import TYPES
 from kb_check.findings import Edit
 from kb_check.migrate.change import Change

@@ -6,7 +6,7 @@ import ast
 import keyword
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Mapping
+from kb_build.flow.values.types import Mapping
 from kb_build.symbols.api_names import OPERATORS
 from kb_check.findings import Span
 from kb_check.migrate.change import Change

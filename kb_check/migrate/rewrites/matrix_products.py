@@ -5,8 +5,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import PRODUCTS
-from kb_build.flow.trees import walk
+from kb_build.flow.blender.facts import PRODUCTS
+from kb_build.flow.syntax.trees import walk
 from kb_check.findings import Edit
 from kb_check.migrate.change import Change
 from kb_check.migrate.rewrite import Rewrite

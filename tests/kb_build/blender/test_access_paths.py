@@ -10,7 +10,7 @@ import pytest
 from told_by_blender import told_by_blender
 
 from kb_build.blender.access_paths import reached_expressions
-from kb_build.flow.symbols import BaseSymbols
+from kb_build.flow.blender.symbols import BaseSymbols
 from kb_build.symbols.records import Symbol
 
 if TYPE_CHECKING:

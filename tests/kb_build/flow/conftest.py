@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.flow.api import Api
-from kb_build.flow.symbols import BaseSymbols
+from kb_build.flow.blender.api import Api
+from kb_build.flow.blender.symbols import BaseSymbols
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

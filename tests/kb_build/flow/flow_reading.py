@@ -7,12 +7,12 @@ from textwrap import dedent
 from typing import TYPE_CHECKING
 
 from kb_build.flow.analysis import analyse
-from kb_build.flow.types import Instance, members
+from kb_build.flow.values.types import Instance, members
 
 if TYPE_CHECKING:
     from kb_build.flow.analysis import Analysis
-    from kb_build.flow.api import Api
-    from kb_build.flow.types import Resolution
+    from kb_build.flow.blender.api import Api
+    from kb_build.flow.values.types import Resolution
 
 TYPES = "bpy.types."
 

@@ -11,7 +11,7 @@ import pytest
 from kb_build.flow.analysis import analyse
 
 if TYPE_CHECKING:
-    from kb_build.flow.api import Api
+    from kb_build.flow.blender.api import Api
 
 GONE = "bpy.data.no_such"
 # Class and field of the node → code that has it; ``@`` is where the expression stands.

@@ -8,12 +8,12 @@ import pytest
 
 from kb_build.flow import analysis as analysis_module
 from kb_build.flow.analysis import analyse
-from kb_build.flow.scopes import Scope, State
+from kb_build.flow.state.scopes import Scope, State
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kb_build.flow.api import Api
+    from kb_build.flow.blender.api import Api
 
 
 @pytest.mark.parametrize(

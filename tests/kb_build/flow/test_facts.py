@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import NODES_WITH_SOCKETS_OF_THEIR_OWN
+from kb_build.flow.blender.facts import NODES_WITH_SOCKETS_OF_THEIR_OWN
 from kb_build.symbols.api_names import TYPES as T
 
 if TYPE_CHECKING:

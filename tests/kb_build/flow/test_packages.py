@@ -10,11 +10,11 @@ import pytest
 from flow_reading import TYPES
 
 from kb_build.flow.analysis import analyse_files
-from kb_build.flow.types import Instance, members
+from kb_build.flow.values.types import Instance, members
 
 if TYPE_CHECKING:
     from kb_build.flow.analysis import Analysis
-    from kb_build.flow.api import Api
+    from kb_build.flow.blender.api import Api
 
 
 def read(api: Api, files: dict[str, str]) -> dict[str, Analysis]:

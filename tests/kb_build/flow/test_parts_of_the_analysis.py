@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.flow.analysis import Analyzer
-from kb_build.flow.core import Core
-from kb_build.flow.source_files import SourceFile
+from kb_build.flow.state.core import Core
+from kb_build.flow.state.source_files import SourceFile
 
 if TYPE_CHECKING:
-    from kb_build.flow.api import Api
+    from kb_build.flow.blender.api import Api
 
 PARTS = [part for part in Analyzer.__mro__ if part is not object]
 

@@ -8,7 +8,7 @@ import pytest
 from flow_reading import read, unknown
 
 if TYPE_CHECKING:
-    from kb_build.flow.api import Api
+    from kb_build.flow.blender.api import Api
 
 _EACH = "import bpy\ndef use(things):\n    for one in things:\n        one.nothing\n"
 _SHOWN = "import bpy\ndef show({}):\n    for kind in kinds:\n        bpy.context.object.display_type = kind\n"

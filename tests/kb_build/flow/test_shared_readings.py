@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from flow_reading import symbol, unknown
 
 if TYPE_CHECKING:
-    from kb_build.flow.api import Api
+    from kb_build.flow.blender.api import Api
 
 
 def test_a_socket_is_missing_only_if_no_node_that_it_can_be_has_it(api: Api) -> None:

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import pytest
 from flow_reading import last_type, read, unknown
 
-from kb_build.flow import functions
 from kb_build.flow.analysis import analyse
+from kb_build.flow.execution import functions
 
 if TYPE_CHECKING:
-    from kb_build.flow.api import Api
+    from kb_build.flow.blender.api import Api
 
 _CUBES = """
 import bpy

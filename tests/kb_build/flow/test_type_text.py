@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from kb_build.flow.type_text import read_type
-from kb_build.flow.types import STR, UNKNOWN, Instance, Sequence
+from kb_build.flow.blender.type_text import read_type
+from kb_build.flow.values.types import STR, UNKNOWN, Instance, Sequence
 
 STRIPS = "bpy.types.Sequence"
 

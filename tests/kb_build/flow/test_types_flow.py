@@ -8,7 +8,7 @@ import pytest
 from flow_reading import last_type, read, resolved, symbol, unknown
 
 if TYPE_CHECKING:
-    from kb_build.flow.api import Api
+    from kb_build.flow.blender.api import Api
 
 
 @pytest.mark.parametrize(

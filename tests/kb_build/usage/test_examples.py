@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.flow.api import Api
-from kb_build.flow.symbols import BaseSymbols
+from kb_build.flow.blender.api import Api
+from kb_build.flow.blender.symbols import BaseSymbols
 from kb_build.usage.examples import MOST_EXAMPLES, Example, Uses, clearest, uses_in
 
 if TYPE_CHECKING:

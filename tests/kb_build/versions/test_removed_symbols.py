@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.flow.facts import LOST_MODULES
+from kb_build.flow.blender.facts import LOST_MODULES
 from kb_build.index.analysis import key
 from kb_build.symbols.records import Symbol
 from kb_build.versions.history import ApiHistory, paths_of

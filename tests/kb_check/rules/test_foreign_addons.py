@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.flow.facts import ADDONS
+from kb_build.flow.blender.facts import ADDONS
 
 if TYPE_CHECKING:
     from kb_check.checker import Checker

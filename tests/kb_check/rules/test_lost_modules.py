@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 from statements_in_blender import run_statements
 
-from kb_build.flow.facts import LOST_MODULES
+from kb_build.flow.blender.facts import LOST_MODULES
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -1,0 +1,1 @@
+"""What a Blender has, as types: from its symbols, its docstrings, and facts that these do not tell."""

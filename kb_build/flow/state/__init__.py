@@ -1,0 +1,1 @@
+"""What is known where the analysis reads: the files, their definitions, and what each name holds there."""

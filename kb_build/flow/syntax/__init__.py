@@ -1,0 +1,1 @@
+"""Scripts as syntax trees, without any types."""
