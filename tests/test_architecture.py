@@ -88,6 +88,11 @@ RULES = (
         "kb_build.flow",
         *("syntax", "values", "blender", "state", "evaluation", "calls", "execution", "analysis"),
     ),
+    *in_order(
+        "kb_build.blender.inside",
+        *("wire", "apart", "classes", "outside_rna", "instances", "passes", "nodes"),
+        *("bpy_ops", "preconditions", "tried", "extract_api"),
+    ),
     # Checking words its findings as the knowledge base words its answers. The server loads the tool by its name.
     Rule("kb_check", others("simworlds", "kb_check", "kb_build", "kb_serve"), through=True),
     Rule(
@@ -403,7 +408,6 @@ LISTS = frozenset(
 )
 # Folders with more modules, and how many they may have. No folder is added here, and no number is raised.
 CROWDED = {
-    "kb_build/blender/inside": 30,
     "kb_serve/answer": 30,
     "kb_serve/answer/steps": 20,
     "kb_serve/recognise/names": 21,

@@ -55,7 +55,7 @@ if TYPE_CHECKING:
 _SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
 _SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
 _ITEMS = "enum_items"  # the record of what instances listed
-# How ``inside/modules.py`` marks functions of modules written in Python.
+# How ``inside/outside_rna/modules.py`` marks functions of modules written in Python.
 _OF_MODULE, _SELF = "of_module", "(self"
 _BOUND = re.compile(r"^\((?:self|cls)\b(?:, /)?(?:, )?")  # what a method gets from the dot before it
 _ROLE = re.compile(r":class:`~?([^`]+)`")  # which some of RNA's descriptions have
@@ -64,7 +64,7 @@ _SHARED_ENUM = re.compile(r"\brna_enum_\w+")
 # Values that are listed where the module is described: ``**`UNIFORM_COLOR`**: Attributes…``.
 _LISTED_BY_MODULE = re.compile(r"One of the builtin \w+ names\.?")
 _LISTED_NAME = re.compile(r"^\*\*`([A-Z][A-Z0-9_]*)`\*\*", re.MULTILINE)
-# How ``inside/keywords.py`` marks what it finds.
+# How ``inside/outside_rna/keywords.py`` marks what it finds.
 _NO_KEYWORDS, _BY_PLACE, _BY_NAME, _OPTIONAL = "no-keywords", "by-place:", "by-name:", "all-optional"
 _REQUIRES, _PLACE_ONLY = "requires:", "place-only:"
 _IN_PLACE_OF_ERROR = "instead of raising"  # which None does as any other value, where it is given

@@ -41,7 +41,7 @@ class _Tried:
 
 
 def refusals(outcomes: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Rows for records.Refusal, from what came of all calls of a function that were tried (see inside.refusals)."""
+    """Rows for records.Refusal, from what came of all calls that were tried of a function (inside.tried.refusals)."""
     first: dict[tuple[str, tuple[str, ...], str], list[_Call]] = defaultdict(list)
     again: dict[tuple[str, str], list[_Call]] = defaultdict(list)
     for row in outcomes:

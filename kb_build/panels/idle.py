@@ -1,4 +1,4 @@
-"""What settings depend on to have an effect, as it was tried in Blender (inside/instances/tried/idle.py)."""
+"""What settings depend on to have an effect, as it was tried in Blender (inside/tried/idle.py)."""
 
 from __future__ import annotations
 

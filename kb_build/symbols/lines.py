@@ -60,7 +60,7 @@ if TYPE_CHECKING:
     from kb_build.symbols.taken import Taken
 
 _ACTIVE = "bpy.context.object"
-# Before an operator is said to take nothing (see ``kb_build/blender/inside/operator_areas.py``).
+# Before an operator is said to take nothing (see ``kb_build/blender/inside/preconditions/operator_areas.py``).
 TRIED = "objects of every type in every mode, areas of every type, things that calls add and editors show"
 IN_MODULE = "Blender is a module of Python (`import bpy`)"
 _REGISTERED = "nodes of a class that a script registers: built-in ones refuse it"

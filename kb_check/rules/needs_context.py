@@ -17,7 +17,7 @@ a function ``register``), modules that only define, functions that the script do
 ``bpy.app.background`` or for the operator's ``poll``.
 
 Which operators those are was found by asking each whether it can run, with objects of all types in all modes, in every
-area and in none (``kb_build/blender/inside/operator_areas.py``).
+area and in none (``kb_build/blender/inside/preconditions/operator_areas.py``).
 """
 
 from __future__ import annotations

@@ -27,7 +27,7 @@ Not reported otherwise: what stands inside `temp_override`, or in a `try` that c
 that may change the mode out of sight. Blender is taken to have its own settings: new objects do not enter Edit Mode.
 
 In which modes operators run was found by asking each, with objects of all types in all modes
-(``kb_build/blender/inside/operator_needs.py``).
+(``kb_build/blender/inside/preconditions/operator_needs.py``).
 """
 
 from __future__ import annotations

@@ -15,32 +15,16 @@ import traceback
 
 import bpy
 
-from . import (
-    accepted,
-    addon_names,
-    context,
-    crashes,
-    crashing_calls,
-    given_nothing,
-    left_out,
-    modules,
-    nodes,
-    operator_needs,
-    operators,
-    own_classes,
-    reached_modes,
-    refusals,
-    returning_none,
-    rna,
-    source_items,
-    undo_steps,
-    windowless,
-)
+from . import nodes
 from .apart import Beside, can_work_apart
+from .bpy_ops import addon_names, left_out, operators
+from .classes import context, given_nothing, own_classes, rna, source_items
 from .instances import context_modes, new_things, own_names, pointer_fillers, startup
 from .instances.neighbours import Neighbours
 from .instances.observer import Observer
-from .instances.tried import evaluated, idle, limits
+from .outside_rna import crashing_calls, modules, returning_none, windowless
+from .preconditions import operator_needs, reached_modes, undo_steps
+from .tried import accepted, crashes, evaluated, idle, limits, refusals
 from .wire import Writer
 
 INVERTED = re.compile(r"\.prop\(\w+, ['\"](\w+)['\"][^()\n]*invert_checkbox=True")

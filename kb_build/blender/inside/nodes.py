@@ -11,8 +11,8 @@ import math
 import bpy
 
 from . import passes
+from .classes.rna import read_items
 from .instances.assigning import put, refused_items
-from .rna import read_items
 from .wire import limit, plain
 
 MOST_STATES = 1_000

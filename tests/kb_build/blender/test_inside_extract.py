@@ -707,9 +707,9 @@ os._exit(0)
 """
 ASK_NEEDS = """
 import json, os, sys
-from kb_build.blender.inside import operator_needs
 from kb_build.blender.inside.apart import Beside
 from kb_build.blender.inside.instances.observer import Observer
+from kb_build.blender.inside.preconditions import operator_needs
 from kb_build.blender.inside.wire import Writer
 with open(sys.argv[2], "w") as file:
     operator_needs.find_all(Writer(file), Observer(), [], Beside("needs", lambda _write: os.abort()))
@@ -994,7 +994,7 @@ def test_a_blender_that_has_moved_is_asked_again_and_tells_another_user_the_same
 def test_a_thing_is_as_it_was_after_edit_mode_was_tried(tmp_path: Path) -> None:
     lines = [
         "import bpy",
-        "from kb_build.blender.inside.refusals import is_taken_in_edit_mode",
+        "from kb_build.blender.inside.tried.refusals import is_taken_in_edit_mode",
         "curve = bpy.data.curves.new('curve', 'CURVE')",
         "spline = curve.splines.new('POLY')",
         "add = spline.bezier_points.bl_rna.functions['add']",

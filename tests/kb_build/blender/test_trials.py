@@ -19,7 +19,7 @@ pytestmark = pytest.mark.blender
 TRY = """
 import json, os, sys
 import bpy
-from kb_build.blender.inside import crashes
+from kb_build.blender.inside.tried import crashes
 
 begun = sys.argv[1]
 before = []
@@ -59,7 +59,7 @@ os._exit(0)
 DECLARING = """
 import json, os, sys
 import bpy
-from kb_build.blender.inside.rna import declaring_class
+from kb_build.blender.inside.classes.rna import declaring_class
 
 def walked(rna, name):
     pointer = rna.properties[name].as_pointer()

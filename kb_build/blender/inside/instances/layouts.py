@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What there is to read in the instances of a class."""
 
-from ..rna import ancestry, default_of, path_of, read_items
+from ..classes.rna import ancestry, default_of, path_of, read_items
 
 LONGEST_ARRAY = 32
 # Blender 4.5 crashes when an unpaired node is asked for its pair.

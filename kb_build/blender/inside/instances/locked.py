@@ -5,7 +5,7 @@ Each instance is asked (``bpy_struct.is_property_readonly``) when it is new and 
 its own that is turned over makes the difference.
 """
 
-from ..rna import ancestry
+from ..classes.rna import ancestry
 from .making import by_operator
 
 SWITCHES = "use_"

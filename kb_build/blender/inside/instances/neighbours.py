@@ -7,7 +7,7 @@ owner, into each of theirs. Where a neighbour's setting decides, its other setti
 
 import bpy
 
-from ..rna import declaring_class
+from ..classes.rna import declaring_class
 from .assigning import put, refused_value_items
 from .observer import UNVARIED
 

@@ -8,7 +8,7 @@ that belong to it, and read again in each of its modes.
 
 import bpy
 
-from ..rna import ancestry, declaring_class
+from ..classes.rna import ancestry, declaring_class
 from ..wire import plain
 from .assigning import put, refused_items, refused_value_items, same
 from .layouts import Layout, asked_pointers

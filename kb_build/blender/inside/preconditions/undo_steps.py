@@ -10,9 +10,9 @@ from contextlib import suppress
 
 import bpy
 
+from ..apart import apart, ended_at
+from ..instances.making import activate, mesh_object, remove
 from .active_objects import can_run, modes
-from .apart import apart, ended_at
-from .instances.making import activate, mesh_object, remove
 from .operator_needs import operators
 
 CALL = "bpy.ops.ed.undo_push()"

@@ -8,8 +8,8 @@ import textwrap
 import _bpy
 import bpy
 
-from .instances.assigning import refused_items
-from .rna import parameter
+from ..classes.rna import parameter
+from ..instances.assigning import refused_items
 
 OPERATORS = "ops"  # the module of bpy
 REFUSED = "\x01"

@@ -7,8 +7,8 @@ object whose data RNA has no class for, as a version has of a kind of data that 
 
 import bpy
 
-from .apart import sent_apart
-from .instances.making import scratch_scene
+from ..apart import sent_apart
+from ..instances.making import scratch_scene
 
 MODULES = ("curve", "mesh", "object", "surface")
 CURSOR = (1.0, 2.0, 3.0)

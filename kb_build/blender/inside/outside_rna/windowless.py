@@ -5,7 +5,7 @@ import types
 
 import bpy
 
-from .apart import sent_apart
+from ..apart import sent_apart
 from .modules import load
 
 MODULE = "gpu"

@@ -6,7 +6,7 @@ import types
 
 import bpy
 
-from .wire import limit, plain
+from ..wire import limit, plain
 
 UI_BASES = (
     "Panel", "Menu", "Header", "UIList", "AssetShelf", "KeyingSetInfo", "Gizmo", "GizmoGroup", "FileHandler",

@@ -17,8 +17,8 @@ from contextlib import contextmanager, nullcontext, suppress
 
 import bpy
 
+from ..instances.making import activate, choices, no_sequencer_scene, remove
 from .active_objects import Objects, can_run, empty_scene, modes, typed_object, wanted
-from .instances.making import activate, choices, no_sequencer_scene, remove
 from .operator_settings import SPACE, TRIED, made, shown
 
 SET_IN_SPACE = re.compile(rf"{re.escape(SPACE)}\.((?:\w+\.)*)(\w+) = ")

@@ -10,8 +10,8 @@ from array import array
 
 import bpy
 
-from ...rna import path_of
-from ..making import add_object, choices, new_modifier, scratch_scene
+from ..classes.rna import path_of
+from ..instances.making import add_object, choices, new_modifier, scratch_scene
 
 SIZE = 4  # of the grid, in vertices
 FRAME = 12  # what changes with time has begun

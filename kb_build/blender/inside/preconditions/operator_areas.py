@@ -13,11 +13,11 @@ from contextlib import suppress
 
 import bpy
 
+from ..apart import apart, can_work_apart
+from ..bpy_ops.operator_defaults import Defaults
+from ..instances.making import activate, all_strips, choices
 from . import operator_wants
 from .active_objects import can_run
-from .apart import apart, can_work_apart
-from .instances.making import activate, all_strips, choices
-from .operator_defaults import Defaults
 
 # What is asked in every area: most operators of editors want no more.
 MANY = (("mesh", "EDIT"), ("grease_pencils", "OBJECT"), ("grease_pencils_v3", "OBJECT"))

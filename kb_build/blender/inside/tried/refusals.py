@@ -13,18 +13,18 @@ from contextlib import suppress
 
 import bpy
 
-from .apart import apart, sent_apart
-from .instances.making import (
+from ..apart import apart, sent_apart
+from ..instances.making import (
     activate,
     called,
     choices,
     object_of,
     scratch_scene,
 )
-from .instances.new_things import BY_FUNCTIONS
-from .instances.pointer_fillers import ADDING
-from .nodes import TREES
-from .nodes import make as make_in
+from ..instances.new_things import BY_FUNCTIONS
+from ..instances.pointer_fillers import ADDING
+from ..nodes import TREES
+from ..nodes import make as make_in
 
 NAMED = ADDING | {"insert"}
 # A name and a number that no message of Blender's has of itself.

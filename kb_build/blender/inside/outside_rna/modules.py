@@ -12,10 +12,10 @@ from pathlib import Path
 
 import bpy
 
+from ..classes.rna import ATTRIBUTE_TYPES, METHOD_TYPES
+from ..wire import plain
 from . import bmesh_operators
 from .keywords import flags_of
-from .rna import ATTRIBUTE_TYPES, METHOD_TYPES
-from .wire import plain
 
 # Canonical homes first: what a later module merely imports is already known by then.
 ROOTS = (

@@ -11,11 +11,11 @@ import traceback
 
 import bpy
 
+from ..bpy_ops.operator_defaults import Defaults
+from ..bpy_ops.operators import operator_names
+from ..instances.making import SEQUENCER_SCENE, attempts, choices, mesh_object, no_sequencer_scene, remove
 from . import operator_areas
 from .active_objects import Objects, can_run, collection_calls, empty_scene, modes
-from .instances.making import SEQUENCER_SCENE, attempts, choices, mesh_object, no_sequencer_scene, remove
-from .operator_defaults import Defaults
-from .operators import operator_names
 
 # More modifiers than these are any modifier.
 MOST_MODIFIERS = 6

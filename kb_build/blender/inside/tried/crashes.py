@@ -12,18 +12,18 @@ from functools import partial
 
 import bpy
 
-from . import rna
-from .apart import MOMENT, apart, crashes, is_crash, sent_apart, sent_with_status
-from .instances.making import (
+from ..apart import MOMENT, apart, crashes, is_crash, sent_apart, sent_with_status
+from ..classes import rna
+from ..instances.making import (
     SEQUENCER_SCENE,
     called,
     has_sequencer_scene,
     no_sequencer_scene,
     scratch_scene,
 )
-from .instances.new_things import BY_FUNCTIONS, animation, constraints, strips
-from .nodes import TREES
-from .nodes import make as make_in
+from ..instances.new_things import BY_FUNCTIONS, animation, constraints, strips
+from ..nodes import TREES
+from ..nodes import make as make_in
 from .refusals import LEAVING_GAPS, objects, plain_argument
 
 # Each setting and each function is tried on so many things.

@@ -10,14 +10,14 @@ what extreme values end there is left out.
 
 import bpy
 
-from ...apart import sent_apart
-from ...crashes import nodes
-from ...rna import path_of
-from ...wire import limit
-from ..assigning import refused_value_items, same
-from ..layouts import CHOSEN
-from ..making import scratch_scene
-from ..new_things import MAKERS
+from ..apart import sent_apart
+from ..classes.rna import path_of
+from ..instances.assigning import refused_value_items, same
+from ..instances.layouts import CHOSEN
+from ..instances.making import scratch_scene
+from ..instances.new_things import MAKERS
+from ..wire import limit
+from .crashes import nodes
 
 NUMBERS = frozenset({"INT", "FLOAT"})
 MOST = 2e6  # beyond it a number may take all memory

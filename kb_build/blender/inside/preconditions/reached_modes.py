@@ -3,9 +3,9 @@
 
 import bpy
 
+from ..apart import sent_apart
+from ..instances.making import activate, choices, mesh_object, remove, scratch_scene
 from .active_objects import modes, typed_object
-from .apart import sent_apart
-from .instances.making import activate, choices, mesh_object, remove, scratch_scene
 
 # The properties that tell modes.
 OF_CONTEXT, OF_OBJECT = "bpy.types.Context.mode", "bpy.types.Object.mode"

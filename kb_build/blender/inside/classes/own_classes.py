@@ -8,7 +8,7 @@ import re
 
 import bpy
 
-from .apart import sent_apart
+from ..apart import sent_apart
 
 MISSING = re.compile(r'class to have an "(\w+)" attribute')
 # How the names of such classes are written; those of the others are free.

@@ -9,10 +9,10 @@ import traceback
 
 import bpy
 
-from ...rna import path_of
-from ..layouts import NOT_ASKED
-from ..making import attempts, choices, mesh_object, new_modifier, scratch_scene
-from ..observer import AROUND, DEPTH, UNREADABLE
+from ..classes.rna import path_of
+from ..instances.layouts import NOT_ASKED
+from ..instances.making import attempts, choices, mesh_object, new_modifier, scratch_scene
+from ..instances.observer import AROUND, DEPTH, UNREADABLE
 
 FRAMES = 4
 # More elements than these are all alike.

@@ -12,12 +12,12 @@ from functools import partial
 
 import bpy
 
-from .apart import crashes, sent_apart
+from ..apart import crashes, sent_apart
+from ..classes.rna import path_of
+from ..instances.making import choices, object_of, scratch_scene
+from ..instances.new_things import MAKERS
+from ..nodes import TREES
 from .crashes import nodes
-from .instances.making import choices, object_of, scratch_scene
-from .instances.new_things import MAKERS
-from .nodes import TREES
-from .rna import path_of
 
 ITSELF = "itself"
 # Of several instances the first of these counts.

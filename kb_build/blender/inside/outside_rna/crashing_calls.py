@@ -14,7 +14,7 @@ from functools import partial
 import bmesh
 import bpy
 
-from .apart import crashes, ended_at
+from ..apart import crashes, ended_at
 from .bmesh_operators import UNUSABLE, parameters
 
 ELEMENTS = ("BMVert", "BMEdge", "BMFace")

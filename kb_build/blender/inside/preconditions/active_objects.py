@@ -3,7 +3,7 @@
 
 import bpy
 
-from .instances.making import activate, add_object, choices, object_of, remove
+from ..instances.making import activate, add_object, choices, object_of, remove
 
 MOST_TYPES = 6
 MOST_CASES = 3

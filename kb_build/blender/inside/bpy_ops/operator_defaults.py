@@ -5,7 +5,7 @@ together while Blender runs.
 An operator names its values when it refuses another, before it does anything, where the context lets it run.
 """
 
-from .instances.assigning import refused_items
+from ..instances.assigning import refused_items
 from .operators import REFUSED, names_in_file
 
 

@@ -9,8 +9,8 @@ from collections import defaultdict
 
 import bpy
 
+from ..instances.making import SEQUENCER_SCENE, choices, remove
 from .active_objects import collection_calls, typed_object
-from .instances.making import SEQUENCER_SCENE, choices, remove
 
 SPACE = "area.spaces.active"
 TRIED = (AttributeError, TypeError, RuntimeError, ValueError, KeyError, IndexError, OSError)
