@@ -18,7 +18,7 @@ from kb_check.summary import mended
 from kb_check.text.source import split_lines
 from kb_serve.reader import UNLIMITED
 from kb_serve.recognise.code.wrong_values import NO_VALUE
-from kb_serve.recognise.names.corrections import is_misspelling
+from kb_serve.recognise.names.likely.corrections import is_misspelling
 from kb_serve.recognise.removed.lost_names import is_telling
 from kb_serve.recognise.resolving.chains import MOST_CODE, find_chains
 from kb_serve.recognise.resolving.variables import is_guess, usual_classes

@@ -160,6 +160,7 @@ RULES = (
             "kb_build.pipeline",
         ),
     ),
+    *in_order("kb_serve.recognise.names", "likely", "named", "elsewhere", "by_words"),
     # The knowledge base is reached over MCP, as any other client reaches it.
     Rule("agents", others("simworlds", "agents"), through=True),
     Rule(
@@ -410,7 +411,6 @@ LISTS = frozenset(
 CROWDED = {
     "kb_serve/answer": 30,
     "kb_serve/answer/steps": 20,
-    "kb_serve/recognise/names": 21,
 }
 
 

@@ -28,7 +28,7 @@ from kb_check.running.tried import is_tried
 from kb_check.syntax.bindings import once_bound
 from kb_check.syntax.words import words_in_texts
 from kb_check.values.misfits import describe
-from kb_serve.recognise.names.elements import elsewhere
+from kb_serve.recognise.names.elsewhere.elements import elsewhere
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -9,8 +9,8 @@ from kb_build.symbols.api_names import OPERATORS, STRUCT, TYPES, interface_part
 from kb_build.symbols.lines import written
 from kb_build.symbols.paths import as_code, is_socket, last_name, split_path
 from kb_build.symbols.unlisted import OPTIONS, option_of
-from kb_serve.recognise.names.corrections import names_meant, nearest
-from kb_serve.recognise.names.enum_values import EnumValues
+from kb_serve.recognise.names.likely.corrections import names_meant, nearest
+from kb_serve.recognise.names.named.enum_values import EnumValues
 from kb_serve.recognise.resolving.subscripts import MODIFIER_PROPERTIES, CustomProperties
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from kb_serve.recognise.resolving.chains import ChainKey
 from simworlds.schemas.value_class import value_class
 
 if TYPE_CHECKING:
-    from kb_serve.recognise.names.corrections import Correction
+    from kb_serve.recognise.names.likely.corrections import Correction
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol
 
 # What makes a match of something.

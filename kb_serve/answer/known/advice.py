@@ -13,7 +13,7 @@ from kb_serve.recognise.messages.nameless.python import PLAIN_FUNCTION
 from kb_serve.recognise.messages.nameless.rendering import OF_32_BITS
 from kb_serve.recognise.messages.none_before import TAKES_NO_MODIFIER
 from kb_serve.recognise.messages.ways_to_run import NO_FLUIDS
-from kb_serve.recognise.names.elements import ADDS_BOID_RULE
+from kb_serve.recognise.names.elsewhere.elements import ADDS_BOID_RULE
 
 _STROKE = "_bpy_internal.grease_pencil.stroke.GreasePencilStroke"
 _STYLE = f"{TYPES}MaterialGPencilStyle"

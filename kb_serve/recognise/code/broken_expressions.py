@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import OPERATORS, TYPES
 from kb_build.symbols.unlisted import SOMETIMES
-from kb_serve.recognise.names.elements import ADDING, elsewhere, meant_by_key
-from kb_serve.recognise.names.holders import of_collection
-from kb_serve.recognise.names.members_within import of_elements
+from kb_serve.recognise.names.elsewhere.elements import ADDING, elsewhere, meant_by_key
+from kb_serve.recognise.names.elsewhere.holders import of_collection
+from kb_serve.recognise.names.elsewhere.members_within import of_elements
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.resolving.chain_starts import ROOTS
 from kb_serve.recognise.resolving.chains import ChainStep

@@ -30,9 +30,9 @@ from kb_serve.recognise.code.broken_expressions import (
 from kb_serve.recognise.code.loose_names import LooseNames
 from kb_serve.recognise.code.names_beside import NamesBeside, said_in_words
 from kb_serve.recognise.code.python_methods import note_on_method
-from kb_serve.recognise.names.holders import by_what_holds_it
-from kb_serve.recognise.names.likely_values import value_there
-from kb_serve.recognise.names.said_otherwise import said_otherwise
+from kb_serve.recognise.names.by_words.said_otherwise import said_otherwise
+from kb_serve.recognise.names.elsewhere.holders import by_what_holds_it
+from kb_serve.recognise.names.likely.likely_values import value_there
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed.removed_symbols import for_reading
 from kb_serve.recognise.resolving.animated_paths import path_given
@@ -46,8 +46,8 @@ if TYPE_CHECKING:
 
     from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader, SymbolEntry
-    from kb_serve.recognise.names.corrections import Corrector
-    from kb_serve.recognise.names.operator_words import OperatorWords
+    from kb_serve.recognise.names.by_words.operator_words import OperatorWords
+    from kb_serve.recognise.names.likely.corrections import Corrector
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed.old_code import OldCode, OldName
     from kb_serve.recognise.resolving.chains import Chain

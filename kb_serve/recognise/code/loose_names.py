@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key, terms
 from kb_build.schema import FORM_NAME, FORM_SHORT
 from kb_build.symbols.api_names import TYPES
-from kb_serve.recognise.names.enum_values import is_value
-from kb_serve.recognise.names.node_names import add_nodes_meant, is_like_a_node
+from kb_serve.recognise.names.likely.node_names import add_nodes_meant, is_like_a_node
+from kb_serve.recognise.names.named.enum_values import is_value
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.recognition import MissingName
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
-    from kb_serve.recognise.names.corrections import Corrector
+    from kb_serve.recognise.names.likely.corrections import Corrector
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.resolving.chains import Chain
 

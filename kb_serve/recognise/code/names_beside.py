@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import STOP_WORDS, stem, words
 from kb_build.symbols.api_names import STRUCT, TYPES
-from kb_serve.recognise.names.members_by_words import members_by_words
+from kb_serve.recognise.names.by_words.members_by_words import members_by_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.paths import split_path
 from kb_serve.recognise.code.contexts import NO_OVERRIDE, with_context
-from kb_serve.recognise.names.likely_keywords import likely_parameters
-from kb_serve.recognise.names.set_elsewhere import set_elsewhere
+from kb_serve.recognise.names.by_words.set_elsewhere import set_elsewhere
+from kb_serve.recognise.names.likely.likely_keywords import likely_parameters
 from kb_serve.recognise.resolving.call_texts import arguments
 from kb_serve.signatures import places_of
 from simworlds.counting import counted

@@ -10,8 +10,8 @@ from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.flags import never_taken
 from kb_build.symbols.unlisted import FEWEST_VALUES, MORE_VALUES
 from kb_serve.recognise.code.refusals import given_texts
-from kb_serve.recognise.names.likely_keywords import likely_parameters
-from kb_serve.recognise.names.likely_values import likely_items
+from kb_serve.recognise.names.likely.likely_keywords import likely_parameters
+from kb_serve.recognise.names.likely.likely_values import likely_items
 from kb_serve.recognise.resolving.call_texts import arguments, texts_in
 
 if TYPE_CHECKING:

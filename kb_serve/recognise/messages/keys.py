@@ -17,7 +17,7 @@ from kb_serve.recognise.messages.parts_of_nodes import (
     on_setting,
     sockets_by_setting,
 )
-from kb_serve.recognise.names.names_of_new import NamesOfNew
+from kb_serve.recognise.names.named.names_of_new import NamesOfNew
 from kb_serve.recognise.removed.newer_nodes import tell_of_the_newer_node
 from kb_serve.recognise.resolving.subscripts import CustomProperties
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import ID, TYPES
 from kb_build.symbols.records import ANIMATABLE
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.names.corrections import nearest
+from kb_serve.recognise.names.likely.corrections import nearest
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

@@ -11,7 +11,7 @@ from kb_build.index.analysis import words
 from kb_build.symbols.api_names import OBJECT, SIDES, TYPES
 from kb_build.symbols.paths import socket_node
 from kb_serve.recognise.code.refusals import is_listed, refuses
-from kb_serve.recognise.names.members_within import members_within
+from kb_serve.recognise.names.elsewhere.members_within import members_within
 from kb_serve.recognise.resolving.call_texts import texts_given
 from kb_serve.recognise.resolving.chain_starts import ROOTS
 from kb_serve.recognise.resolving.chains import ChainStep

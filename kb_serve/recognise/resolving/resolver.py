@@ -13,8 +13,8 @@ from kb_build.symbols.api_names import COLLECTION, GROUPS, NODE, OBJECT, OPERATO
 from kb_build.symbols.paths import is_socket, last_name
 from kb_build.symbols.python_values import METHODS, python_class
 from kb_serve.recognise.code.refusals import is_listed, refuses, refuses_call
-from kb_serve.recognise.names.holders import by_what_holds_it
-from kb_serve.recognise.names.operator_words import known_operator_of_class
+from kb_serve.recognise.names.by_words.operator_words import known_operator_of_class
+from kb_serve.recognise.names.elsewhere.holders import by_what_holds_it
 from kb_serve.recognise.resolving.chain_starts import ChainStarts
 from kb_serve.recognise.resolving.chain_values import ChainValue, ChainValues
 from kb_serve.recognise.resolving.chains import ChainStep

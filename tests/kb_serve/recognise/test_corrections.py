@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import SEED, classes, misspelt, of_data, owner_and_name
 
-from kb_serve.recognise.names.corrections import LIKELY, Corrector, is_misspelling, nearest, similarity
+from kb_serve.recognise.names.likely.corrections import LIKELY, Corrector, is_misspelling, nearest, similarity
 from kb_serve.recognise.resolving.chains import find_chains
 from kb_serve.recognise.resolving.resolver import Resolver
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.names.corrections import Correction
+    from kb_serve.recognise.names.likely.corrections import Correction
     from kb_serve.recognise.resolving.resolver import ResolvedChain
 
 

@@ -12,7 +12,12 @@ from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.lines import taken_text
 from kb_build.symbols.paths import argument_of, plain_path
 from kb_build.symbols.records import EnumItem
-from kb_serve.recognise.names.likely_values import explaining, labelled_items, likely_items, same_elsewhere
+from kb_serve.recognise.names.likely.likely_values import (
+    explaining,
+    labelled_items,
+    likely_items,
+    same_elsewhere,
+)
 from kb_serve.recognise.recognition import WHOLE_LABEL
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from kb_build.index.analysis import key
 from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT
 from kb_build.symbols.api_names import OPERATORS, TYPES
 from kb_serve.reader import PROPERTIES
-from kb_serve.recognise.names.addresses import find_page
-from kb_serve.recognise.names.enum_values import is_quoted_value, is_value
+from kb_serve.recognise.names.named.addresses import find_page
+from kb_serve.recognise.names.named.enum_values import is_quoted_value, is_value
 from kb_serve.recognise.recognition import WHOLE_LABEL
 
 if TYPE_CHECKING:

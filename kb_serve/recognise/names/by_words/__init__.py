@@ -1,0 +1,1 @@
+"""What is called otherwise than a name says, found by words of names and labels."""
