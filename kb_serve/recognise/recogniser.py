@@ -31,16 +31,22 @@ from kb_serve.recognise.message_patterns import (
     without_wording,
 )
 from kb_serve.recognise.messages.messages import Messages
-from kb_serve.recognise.names.named.addresses import ids_in_urls
-from kb_serve.recognise.names.likely.corrections import Corrector, by_first_word, names_meant, nearest, shortened
-from kb_serve.recognise.names.named.enum_values import EnumValues
+from kb_serve.recognise.names.by_words.operator_words import OperatorWords
+from kb_serve.recognise.names.by_words.said_otherwise import said_otherwise
 from kb_serve.recognise.names.elsewhere.holders import by_what_holds_it
 from kb_serve.recognise.names.elsewhere.inputs_meant import input_meant
 from kb_serve.recognise.names.elsewhere.meant_elsewhere import meant_elsewhere
 from kb_serve.recognise.names.elsewhere.members_within import members_within
-from kb_serve.recognise.names.by_words.operator_words import OperatorWords
-from kb_serve.recognise.names.other_kinds import of_another_kind
-from kb_serve.recognise.names.by_words.said_otherwise import said_otherwise
+from kb_serve.recognise.names.elsewhere.other_kinds import of_another_kind
+from kb_serve.recognise.names.likely.corrections import (
+    Corrector,
+    by_first_word,
+    names_meant,
+    nearest,
+    shortened,
+)
+from kb_serve.recognise.names.named.addresses import ids_in_urls
+from kb_serve.recognise.names.named.enum_values import EnumValues
 from kb_serve.recognise.names.named.spellings import Spellings
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.recognition import MissingName, Recognition
