@@ -203,6 +203,9 @@ def serve(  # noqa: PLR0913 - one for each option
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)
     try:
+        from simworlds.mcp_transport.lean_package import load_server_only  # noqa: PLC0415 - not for --help
+
+        load_server_only()
         from kb_serve.server import make_app, make_server  # noqa: PLC0415 - loads the MCP package
 
         if over_http:
