@@ -246,7 +246,10 @@ class BlenderProcess:
                 if progress is not None:
                     progress(*claim.progress)
                 continue
-            threads = self._worker.threads_left()
+            threads = 0
+            if self._worker.has_new_threads():
+                self._worker.go_on()
+                threads = self._worker.threads_left()
             self._worker.pause()
             if threads and not claim.left:
                 claim = claim.model_copy(update={"left": [_of_its_own(threads)]})
@@ -309,6 +312,10 @@ class BlenderProcess:
             while self._arrived:
                 message = self._arrived.popleft()
                 if limited and "progress" not in message:
+                    if (
+                        not self._worker.has_new_threads()
+                    ):  # nothing is left that may work on: stopped once, not twice
+                        self._worker.pause()
                     self._check_usage(what, at_end=True)
                 yield message
 

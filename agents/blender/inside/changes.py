@@ -10,7 +10,7 @@ import tempfile
 import bpy
 from bpy.app.handlers import persistent
 
-from .digests.fingerprint import digests_by_part
+from .digests.fingerprint import lasting_digests
 from .physics import caches
 
 # Collections of bpy.data whose changes are reported.
@@ -39,6 +39,7 @@ _WARNING = b"WARN (bpy.rna)"  # a setting has a value that this Blender was buil
 _C = ctypes.CDLL(None) if os.name == "posix" else None
 _updated = set()
 _cache_watch = {"counts": None, "reset": {}}
+_last = {}  # {uid: {part: digest}} of data-blocks after the last watched code, while nothing else has run since
 
 
 def uid(block):
@@ -91,21 +92,31 @@ def listen():
             handlers.append(listener)
 
 
+def forget():
+    """Notes that something else is about to run in Blender than watched code."""
+    _last.clear()
+
+
 class ChangeWatch:
     """Remembers the file before some code runs; ``report`` returns the differences after it.
 
     The settings of at most ``most`` data-blocks are compared; of more, those that Blender evaluated anew have changed.
+    ``follows``: nothing but watched code runs in this Blender, unless ``forget`` was called. What that code left is
+    then known, which saves half of the reading.
     """
 
-    def __init__(self, most=MOST_BLOCKS):
+    def __init__(self, most=MOST_BLOCKS, *, follows=False):
         self._most = most
+        self._follows = follows
         listen()
         self._settle()
         _updated.clear()
         self._before = _names_by_kind()
         self._modifiers = _modifiers()
+        known = dict(_last) if follows else {}
+        forget()
         with _silenced():
-            self._digests = _digests(self._most)
+            self._digests, _ = _digests(self._most, known)
         self._caches = _frames_held(bpy.context.scene)
         self._baked = _baked_labels()
         _cache_watch.update(counts=self._caches, reset={})
@@ -126,7 +137,7 @@ class ChangeWatch:
         self._settle()
         report = {}
         with _silenced(but_threads=True):
-            digests = _digests(self._most) if self._digests is not None else None
+            digests, lasting = _digests(self._most) if self._digests is not None else (None, {})
         for kind, new in _names_by_kind().items():
             old = self._before[kind]
             both = [key for key in new if key in old]
@@ -151,6 +162,8 @@ class ChangeWatch:
         }
         if entry := {word: names for word, names in entry.items() if names}:
             report["caches"] = entry
+        if self._follows:
+            _last.update(lasting)
         return report
 
     def _changes(self, key, digests):
@@ -169,12 +182,20 @@ class ChangeWatch:
         return sorted(reset.values())
 
 
-def _digests(most):
-    """{uid: {part: digest}} of the data-blocks; None if there are too many to compare."""
-    blocks = [block for kind in KINDS for block in getattr(bpy.data, kind)]
+def _digests(most, known=None):
+    """({uid: {part: digest}} of the data-blocks; those of them that stay what they are while nothing runs in Blender).
+
+    (None, {}) if there are too many to compare. ``known`` are not read.
+    """
+    blocks = {uid(block): block for kind in KINDS for block in getattr(bpy.data, kind)}
     if len(blocks) > most:
-        return None
-    return {uid(block): parts for block, parts in digests_by_part(blocks).items()}
+        return None, {}
+    known = known or {}
+    read, lasting = lasting_digests([block for key, block in blocks.items() if key not in known])
+    digests = {uid(block): parts for block, parts in read.items()}
+    return digests | {key: known[key] for key in blocks if key in known}, {
+        uid(block): read[block] for block in lasting
+    }
 
 
 @contextlib.contextmanager

@@ -28,17 +28,17 @@ def execute(arguments, report):
         interpreter_state.current.names.forget_modules(loaded)  # pyright: ignore[reportAttributeAccessIssue]
         interpreter_state.current.restore_names()  # pyright: ignore[reportAttributeAccessIssue]
 
-    return run_watched(arguments["code"], restore)
+    return run_watched(arguments["code"], restore, follows=True)
 
 
-def run_watched(code, restore=None, around=contextlib.nullcontext, most=MOST_BLOCKS):
-    """Runs code within ``around()``, as ``execute``; changes are told by ``ChangeWatch(most)``.
+def run_watched(code, restore=None, around=contextlib.nullcontext, most=MOST_BLOCKS, *, follows=False):
+    """Runs code within ``around()``, as ``execute``; changes are told by ``ChangeWatch(most, follows=follows)``.
 
     ``restore`` mends the interpreter afterwards; it gets the modules that were loaded before.
     """
     linecache.cache[FILE] = (len(code), None, code.splitlines(keepends=True), FILE)
     result = {"value": None, "error": None}
-    watch = ChangeWatch(most)
+    watch = ChangeWatch(most, follows=follows)
     loaded = {*sys.modules}
     failure = None
     try:

@@ -2,6 +2,7 @@
 """Puts names back that code has changed: in modules that others depend on, the builtins, and ``sys.modules``."""
 
 import builtins
+import operator
 import sys
 import types
 
@@ -13,6 +14,8 @@ _MODULES = (
     *("signal", "struct"),
     *("threading", "time", "traceback", "types", "bpy", "bpy.ops", "bpy.path", "bpy.utils", "mathutils"),
 )
+# Bound here: code may put other functions into the builtins before they are looked through.
+_all, _map, _is = all, map, operator.is_
 _CODE = (types.FunctionType, types.BuiltinFunctionType, types.ModuleType, type)
 
 
@@ -49,7 +52,7 @@ class KeptNames:
     def forget_modules(self, loaded):
         """Forgets modules of ``packages`` that are not among ``loaded``: code has imported them, and may have changed
         them."""
-        for name in [name for name in sys.modules if name.startswith(self._within) and name not in loaded]:
+        for name in [name for name in sys.modules.keys() - loaded if name.startswith(self._within)]:
             del sys.modules[name]
             above, _, last = name.rpartition(".")
             if above in sys.modules:
@@ -82,6 +85,8 @@ class KeptNames:
         sys.modules = self._table
         for module, kept in self._names:
             now = vars(module)
+            if _all(_map(_is, _map(now.get, kept), kept.values())):
+                continue
             for name, value in kept.items():
                 if now.get(name) is not value:
                     now[name] = value
@@ -94,7 +99,8 @@ class KeptNames:
                 function.__kwdefaults__ = of_keywords
         for name in vars(builtins).keys() - self._builtins.keys():
             del vars(builtins)[name]  # pyright: ignore[reportIndexIssue]
-        for name, module in self._modules.items():
-            sys.modules.setdefault(name, module)
+        if not self._modules.keys() <= sys.modules.keys():
+            for name, module in self._modules.items():
+                sys.modules.setdefault(name, module)
         for module, _ in self._names:
             sys.modules[module.__name__] = module

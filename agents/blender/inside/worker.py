@@ -3,7 +3,7 @@
 
 from simworlds.sandbox.inside import mantaflow, service
 
-from . import interpreter_state
+from . import changes, interpreter_state
 from .exchange import usd_thread
 from .physics import freed_bakes, rigid_body_inputs
 
@@ -59,6 +59,9 @@ TOOLS = {
     "check_video": ("self_check", "video"),
 }
 
+# Those after which the file is as the last executed code left it.
+_LEAVING = frozenset({"execute", "present", "ping", "write"})
+
 
 class _Guard:
     """Restores the interpreter after each call, this package's modules included."""
@@ -81,8 +84,10 @@ def main(arguments, more=()):
     freed_bakes.watch()
     usd_thread.start()
     tools = service.Tools(__package__, {**TOOLS, **dict(more)})
-    service.serve(
-        int(arguments[0]),
-        lambda tool, arguments, report: tools.find(tool)(arguments, report),
-        _Guard(),
-    )
+
+    def answer(tool, arguments, report):
+        if tool not in _LEAVING:
+            changes.forget()
+        return tools.find(tool)(arguments, report)
+
+    service.serve(int(arguments[0]), answer, _Guard())

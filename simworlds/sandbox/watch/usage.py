@@ -43,6 +43,7 @@ class UsageMonitor:
         self._next = self._next_at_end = 0.0
         self._at_start = self._at_walk = self._free()
         self._devices = frozenset(self._at_start)
+        self._taken_at_look = self._mapped = 0
         self._least_free = {
             device: min(_LEAST_FREE, free.bytes // 2) for device, free in self._at_start.items()
         }
@@ -54,6 +55,7 @@ class UsageMonitor:
     def watch(self, process: WatchedProcess) -> None:
         """Also checks this process from here on."""
         self._process = process
+        self._taken_at_look = self._mapped = 0
 
     def excess(self, *, at_end: bool = False) -> str | None:
         """Which limit is exceeded, in words.
@@ -120,12 +122,18 @@ class UsageMonitor:
         usages = [folder.measure(at_most) for folder in self._folders]
         size, files = sum(usage.bytes for usage in usages), sum(usage.files for usage in usages)
         taken = _taken(self._at_start, self._free()).bytes
-        nameless = nameless_files(self._process.number, self._devices, mapped=taken > _LITTLE_SPACE)
+        # What is mapped is looked for again when space was taken since: that takes longer than all else.
+        looks = taken > self._taken_at_look + _LITTLE_SPACE
+        nameless = nameless_files(self._process.number, self._devices, mapped=looks)
+        if looks:
+            self._taken_at_look, self._mapped = taken, nameless.mapped
+        else:
+            self._taken_at_look = min(self._taken_at_look, taken)
         size += nameless.bytes
-        if nameless.mapped:
+        if self._mapped:
             # Their size is unknown, but at most what nothing else explains.
             unexplained = taken - (size - self._present.bytes)
-            size += max(0, min(unexplained, nameless.mapped * (self._limits.file_size or unexplained)))
+            size += max(0, min(unexplained, self._mapped * (self._limits.file_size or unexplained)))
         return DiskUsage(size, files + nameless.open, max(usage.deepest for usage in usages))
 
     def _free(self) -> dict[int, FreeSpace]:

@@ -6,6 +6,7 @@ All of it is what the kernel says: code in the process cannot patch that.
 from __future__ import annotations
 
 import os
+import re
 import signal
 import time
 from contextlib import contextmanager, suppress
@@ -20,6 +21,7 @@ _LOOK_SECONDS = 0.005
 # A thread of a pool that has nothing to do waits here; code that waits for time, a file or a pipe waits elsewhere.
 _IDLE_PLACES = frozenset({"futex_wait_queue", "futex_wait_queue_me", "futex_do_wait", "", "0"})
 _IDLE_CALLS = frozenset({"202", "98", "449", "455"})  # futex, futex_waitv, futex_wait on x86_64 and aarch64
+_USED = re.compile(rb"^(RssAnon|RssShmem|Threads):\s+(\d+)", re.MULTILINE)
 _RESUMED = frozenset({"219", "128"})  # restart_syscall: waits on after it was stopped, whatever it waited for
 
 
@@ -41,11 +43,10 @@ class WatchedProcess:
 
     def memory_and_threads(self) -> tuple[int, int]:
         """(bytes of memory not backed by a file, number of threads); 0 where that cannot be known."""
-        values = self._status()
+        values = dict(_USED.findall(self._status()))
         try:
-            memory = sum(int(values[name].split()[0]) for name in ("RssAnon", "RssShmem"))
-            return memory * 1024, int(values["Threads"])
-        except (LookupError, ValueError):
+            return (int(values[b"RssAnon"]) + int(values[b"RssShmem"])) * 1024, int(values[b"Threads"])
+        except LookupError:
             return 0, 0
 
     # Standing still
@@ -63,7 +64,7 @@ class WatchedProcess:
     @contextmanager
     def standing_still(self) -> Generator[None]:
         """Stops the process meanwhile, unless it is stopped already."""
-        if self._paused or self._status().get("State", "").startswith("T"):
+        if self._paused or b"\nState:\tT" in self._status():
             yield
             return
         self.pause()
@@ -84,8 +85,12 @@ class WatchedProcess:
         """Threads that there are now are its own."""
         self._known = self._tasks()
 
+    def has_new_threads(self) -> bool:
+        """Whether threads that began since ``mark`` are there, whatever they do."""
+        return not self._tasks() <= self._known
+
     def threads_left(self) -> int:
-        """How many threads that began since ``mark`` still do something, after a grace period."""
+        """How many threads that began since ``mark`` still do something, after a grace period. The process must run."""
         deadline = time.monotonic() + _GRACE_SECONDS
         while left := [task for task in self._tasks() - self._known if self._works(task)]:
             if time.monotonic() > deadline:
@@ -118,14 +123,15 @@ class WatchedProcess:
             with suppress(OSError):
                 signal.pidfd_send_signal(self._descriptor, number)
 
-    def _status(self) -> dict[str, str]:
+    def _status(self) -> bytes:
+        """What the kernel says of it, a line each; nothing if there is no such process."""
         if not self.number:
-            return {}
+            return b""
         try:
-            lines = Path(f"/proc/{self.number}/status").read_text().splitlines()
+            with open(f"/proc/{self.number}/status", "rb", buffering=0) as file:  # noqa: PTH123 - many times a second
+                return file.read()
         except OSError:
-            return {}
-        return dict(line.split(":\t", 1) for line in lines if ":\t" in line)
+            return b""
 
 
 def innermost_process(process: int) -> int:

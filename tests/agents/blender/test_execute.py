@@ -8,6 +8,7 @@ import pytest
 
 from agents.blender.tools.base import Call, ToolContext, parse
 from agents.blender.tools.execute import TOOL
+from agents.blender.tools.tag import TOOL as TAG
 from simworlds.sandbox.errors import Died, Refusal
 
 if TYPE_CHECKING:
@@ -280,6 +281,41 @@ def test_what_a_new_link_has_evaluated_anew_is_not_told_as_changed(session: Live
     told = changed(session, "bpy.context.collection.objects.link(bpy.data.objects.new('New', None))")
     assert told["objects"] == {"added": ["New"]}
     assert changed(session, "bpy.context.scene.frame_set(5)\nbpy.context.scene.frame_set(1)") == {}
+
+
+def test_what_came_between_two_calls_is_not_told_of_the_second(session: LiveSession) -> None:
+    session.run(FLAG)
+    assert changed(session, "bpy.data.objects['Flag'].location.x = 2") == {
+        "objects": {"changed": ["Flag (transform)"]}
+    }
+    session.use(TAG, strict_grounding=True)
+    assert changed(session, "len(bpy.data.objects)") == {}
+    session.blender.restore()
+    assert changed(session, "bpy.data.objects['Flag'].location.y = 2") == {
+        "objects": {"changed": ["Flag (transform)"]}
+    }
+
+
+def test_a_picture_that_others_write_between_two_calls_is_not_told_of_the_second(
+    session: LiveSession,
+) -> None:
+    make = """
+import os
+made = bpy.data.images.new("Picture", 4, 4)
+made.filepath_raw, made.file_format = os.path.abspath("picture.png"), "PNG"
+made.save()
+"""
+    assert changed(session, make) == {"images": {"added": ["Picture"]}}
+    with (session.blender.folder.workspace.mount / "picture.png").open("ab") as picture:
+        picture.write(b"more")
+    assert changed(session, "len(bpy.data.images)") == {}
+
+
+def test_what_failed_code_changed_is_told_once(session: LiveSession) -> None:
+    session.run(FLAG)
+    failed = session.use(TOOL, code="bpy.data.objects['Flag'].location.x = 2\nnobody")
+    assert failed.data["changed"] == {"objects": {"changed": ["Flag (transform)"]}}
+    assert changed(session, "len(bpy.data.objects)") == {}
 
 
 def test_a_simulation_that_starts_again_is_told(session: LiveSession) -> None:

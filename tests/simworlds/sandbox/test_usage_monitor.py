@@ -8,14 +8,14 @@ import subprocess
 import sys
 import time
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from simworlds.sandbox.confinement.resource_limits import ResourceLimits
 from simworlds.sandbox.hostile_ground import DiskUsage, HostileGround
 from simworlds.sandbox.watch import usage
-from simworlds.sandbox.watch.nameless_files import nameless_files
+from simworlds.sandbox.watch.nameless_files import NamelessFiles, nameless_files
 from simworlds.sandbox.watch.watched_process import WatchedProcess
 
 if TYPE_CHECKING:
@@ -83,6 +83,26 @@ def test_nameless_files_count_toward_the_limit(tmp_path: Path, code: str) -> Non
         assert watch.excess(at_end=True) is None  # nobody knows of the process yet
         watch.watch(WatchedProcess(process.pid))
         assert "brought the run's files to" in (watch.excess(at_end=True) or "")
+
+
+def test_mapped_files_are_looked_for_when_space_was_taken(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looks: list[bool] = []
+
+    def noted(*arguments: Any, mapped: bool = True) -> NamelessFiles:
+        looks.append(mapped)
+        return NamelessFiles(0, 0, 0)
+
+    free = [100_000_000]
+    monkeypatch.setattr(usage, "nameless_files", noted)
+    monkeypatch.setattr(usage.UsageMonitor, "_free", lambda _: {1: usage.FreeSpace(free[0], 1000)})
+    watch = usage.UsageMonitor((HostileGround(tmp_path),), ResourceLimits(disk=1 << 30))
+    # Others take space, and give it back; what is taken from then on counts anew.
+    for megabytes in (99, 80, 78, 95, 94, 88, 87):
+        free[0] = megabytes * 1_000_000
+        assert watch.excess(at_end=True) is None
+    assert looks[1:] == [False, True, False, False, False, True, False]
 
 
 def test_much_taken_space_is_noticed_in_the_pause_between_counts(

@@ -71,6 +71,7 @@ class BlockReader:
         self._animated = {}
         self._animated_types = set()
         self._cache_properties = []
+        self.has_files = False  # whether what was read depends on files that others may write
         self._begin()
 
     def read(self):
@@ -203,6 +204,7 @@ class BlockReader:
             if how == "COLLECTION":
                 yield from self._elements(name, value)
             elif how == "PATH":
+                self.has_files |= bool(value)
                 yield contents_of_path(value, self._block)
             elif how == "POINTER":
                 yield self._without_animated(struct, name, self._reference(value))
@@ -269,6 +271,7 @@ class BlockReader:
                 self._hash.update(_numbers(items.foreach_get, (member,), code, len(items) * wide))
             self._feed([(layer.name, layer.active_render) for layer in struct.uv_layers])
         elif isinstance(struct, bpy.types.Image):
+            self.has_files = True
             self._feed(contents_of_image(struct))
             if struct.is_dirty:
                 self._hash.update(_numbers(struct.pixels.foreach_get, (), "f", len(struct.pixels)))

@@ -39,13 +39,24 @@ def fingerprint(scene, *, at_rest=False):
 
 def digests_by_part(blocks):
     """{block: {part: digest}} of these data-blocks alone, whatever they point to."""
-    plans = {}
-    return {
-        block: {
-            name: digest for name, (digest, _) in BlockReader(block, plans, pictures=False).read().items()
-        }
-        for block in blocks
+    return {block: parts for block, parts, _ in _digests_alone(blocks)}
+
+
+def lasting_digests(blocks):
+    """(as digests_by_part; those of the blocks whose digests stay what they are while nothing runs in Blender)."""
+    read = list(_digests_alone(blocks))
+    return {block: parts for block, parts, _ in read}, {
+        block for block, _, has_files in read if not has_files
     }
+
+
+def _digests_alone(blocks):
+    """(block, {part: digest}, whether they depend on files) of each."""
+    plans = {}
+    for block in blocks:
+        reader = BlockReader(block, plans, pictures=False)
+        parts = {name: digest for name, (digest, _) in reader.read().items()}
+        yield block, parts, reader.has_files
 
 
 def simulation_inputs(scene):
