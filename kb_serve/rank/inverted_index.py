@@ -6,7 +6,7 @@ All is numbered through: first the units, then the topics around them, then the 
 from __future__ import annotations
 
 import math
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import accumulate, pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -29,7 +29,8 @@ Scores = NDArray[np.float32]
 K1 = 2.2
 _PAGES = 2.0  # what a page counts, as pages are not weighed: as much as a symbol that is often used
 _NUMBER_BYTES = 4
-_KEPT = 60  # stems; a query has a dozen at most
+_INFINITE = 0x7C00  # the bits of weights that are finite, and not below 0, are fewer
+_KEPT = 150  # stems; a query has a dozen at most
 
 
 @value_class
@@ -182,26 +183,36 @@ class InvertedIndex:
                 b"".join(data[:cut] for (*_, data), cut in zip(rows, cuts, strict=True)), np.uint32
             )
             weights = np.frombuffer(
-                b"".join(data[cut:] for (*_, data), cut in zip(rows, cuts, strict=True)), np.float16
+                b"".join(data[cut:] for (*_, data), cut in zip(rows, cuts, strict=True)), np.uint16
             )
         except (ValueError, TypeError) as error:
             raise self._reader.damaged(error) from error
         units, documents, end = self.ends
         starts = [0, *accumulate(lengths)]
-        weight = weights.astype(np.float32)  # numpy works with float16 slowly
-        sound = len(numbers) == len(weight) and _within(numbers, 0, end) and np.isfinite(weight).all()
+        sound = (
+            len(numbers) == len(weights) and _within(numbers, 0, end) and bool((weights < _INFINITE).all())
+        )
         if not (sound and _ascend(numbers, starts)):
             raise self._reader.damaged(f"the postings of {', '.join(stem for stem, *_ in rows)}")
-        saturated = np.where(numbers < documents, weight * (K1 + 1) / (weight + K1), weight)
+        plain, of_documents = _values_of_weights()
+        saturated = of_documents.take(weights, mode="clip")
         places = numbers.astype(np.intp)  # which numpy looks up faster
         found: dict[str, StemPostings] = {}
         # Parts of what is kept and forgotten together.
         for (stem, having, _), (first, last) in zip(rows, pairwise(starts), strict=True):
             own = places[first:last]
-            found[stem] = StemPostings(
-                own, saturated[first:last], having, int(own.searchsorted(documents)), idf(units, having)
-            )
+            phrases = int(own.searchsorted(documents))
+            if first + phrases < last:
+                saturated[first + phrases : last] = plain.take(weights[first + phrases : last], mode="clip")
+            found[stem] = StemPostings(own, saturated[first:last], having, phrases, idf(units, having))
         return found
+
+
+@cache
+def _values_of_weights() -> tuple[Scores, Scores]:
+    """What each weight is by its bits: itself, and saturated. Numpy works with float16 slowly."""
+    weight = np.arange(_INFINITE, dtype=np.uint16).view(np.float16).astype(np.float32)
+    return weight, (weight * (K1 + 1) / (weight + K1)).astype(np.float32, copy=False)
 
 
 def _ascend(numbers: NDArray[np.uint32], starts: Sequence[int]) -> bool:

@@ -63,7 +63,7 @@ def said_phrases(index: InvertedIndex, concepts: Sequence[Concept], wanted: NDAr
     weighed = [*_weighed(index, concepts)]
     numbers = np.concatenate([postings.numbers[postings.documents :] for postings, *_ in weighed])
     numbers -= index.ends[1]
-    (kept,) = wanted[index.asked[numbers]].nonzero()
+    (kept,) = wanted.take(index.asked.take(numbers)).nonzero()
     found = numbers[kept]
     # Which concept has told of each.
     ends = accumulate(len(postings.numbers) - postings.documents for postings, *_ in weighed)

@@ -10,6 +10,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pytest
 from asking import SEED, TYPES, classes, of_data, paths
 
@@ -235,6 +236,18 @@ def test_damaged_pages_are_reported(copy: Path) -> None:
             refused.append(str(error))
     assert len(refused) >= 3
     assert all(str(copy) in said for said in refused)
+
+
+@pytest.mark.parametrize("weight", [np.nan, np.inf, -1.0])
+def test_a_weight_that_no_stem_has_is_reported(copy: Path, weight: float) -> None:
+    with closing(sqlite3.connect(copy)) as file:
+        ((data,),) = file.execute("SELECT data FROM postings WHERE stem = 'cloth'")
+        file.execute(
+            "UPDATE postings SET data = ? WHERE stem = 'cloth'", (data[:-2] + np.float16(weight).tobytes(),)
+        )
+        file.commit()
+    with KnowledgeBase(copy) as kb, pytest.raises(BaseUnreadable, match="the postings of"):
+        kb.query("how to bake cloth in physics")
 
 
 def test_a_missing_table_is_reported_as_damage(copy: Path) -> None:
