@@ -391,10 +391,10 @@ class Recogniser:
             or f"active_{missing.name}" in names
             or any(self._is_called(path, missing.name) for path in otherwise)
         )
-        begun = any(name.startswith(f"{missing.name}_") for name in names)
-        if not (is_meant or begun) and self._of_another_kind(missing, recognition):
-            return
         if not is_meant and self._within(missing, recognition, on_new=bool(otherwise)):
+            return
+        is_like = bool(otherwise) or any(name.startswith(f"{missing.name}_") for name in names)
+        if not (is_meant or is_like) and self._of_another_kind(missing, recognition):
             return
         for place, path in enumerate(otherwise):
             sure = _OTHERWISE if self._is_called(path, missing.name) else _LABEL_ENDS

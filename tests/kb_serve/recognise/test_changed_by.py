@@ -45,6 +45,11 @@ _TRIED = {
         "drawn.set_types(type='BEZIER', indices=[0])",
         "drawn.strokes[0].curve_type == 2",
     ),
+    "AnimData.action": (
+        "tweaked.action = action",
+        "tweaked.use_tweak_mode = False; tweaked.action = action",
+        "tweaked.action == action",
+    ),
     "Object.mode": ("ob.mode = 'EDIT'", "bpy.ops.object.mode_set(mode='EDIT')", "ob.mode == 'EDIT'"),
     "Object.type": (
         "text.type = 'MESH'",
@@ -181,6 +186,10 @@ for name, (refused, change, test) in json.load(open(sys.argv[-1])).items():
     end()
     bone, posed = armature.bones["Bone"], rig.pose.bones["Bone"]
     image = bpy.data.images.new("i", 8, 8)
+    action = bpy.data.actions.new("Other")
+    tweaked = new.animation_data_create()
+    tweaked.nla_tracks.new().strips.new("s", 1, bpy.data.actions.new("a"))
+    tweaked.use_tweak_mode = True
     layer = bpy.data.grease_pencils.new("g").layers.new("l")
     drawn = layer.frames.new(1).drawing
     drawn.add_strokes([3])
