@@ -26,7 +26,9 @@ if TYPE_CHECKING:
 
 # The kinds of parts of a script that may stand for what an add-on registers.
 REGISTERED: frozenset[ResolutionKind] = frozenset({"attribute", "store", "text", "button", "name"})
-_SIMPLE = (ast.Assign, ast.AnnAssign, ast.AugAssign, ast.Expr, ast.Return, ast.Delete)
+_SIMPLE = (
+    ast.Assign, ast.AnnAssign, ast.AugAssign, ast.Expr, ast.Return, ast.Delete, ast.Import, ast.ImportFrom,
+)  # fmt: skip
 _T = TypeVar("_T")
 _Key = TypeVar("_Key", bound="Hashable")
 _Node = TypeVar("_Node", bound=ast.AST)

@@ -1,0 +1,104 @@
+"""Names that nothing binds are found: each script is run, and fails or does not."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from statements_in_blender import run_statements
+
+from kb_check.text.fixes import apply_fixes
+from kb_check.text.source import Cell, Source
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import Check
+
+    from kb_check.checker import Checker
+
+_IMPORTED = {
+    "Vector((0, 0, 1))": "from mathutils import Vector",
+    "mathutils.Matrix.Rotation(math.pi, 4, 'X')": "import mathutils",
+    "bmesh.new()": "import bmesh",
+    "np.zeros(3)": "import numpy as np",
+    "random.uniform(0, 1)": "import random",
+    "class G(bpy.types.PropertyGroup):\n    size: FloatProperty()": "from bpy.props import FloatProperty",
+    "class P(Panel):\n    bl_label = 'x'": "from bpy.types import Panel",
+    "@persistent\ndef f(scene):\n    pass": "from bpy.app.handlers import persistent",
+}
+_WRONG = {
+    "a misspelling": "location = 1\nprint(locaton)",
+    "in a function that is called": "def f():\n    return nowhere\nf()",
+    "in a condition": "if nowhere:\n    pass",
+    "in another annotation": "def f(a: Nowhere):\n    pass",
+    "another error is caught": "try:\n    nowhere\nexcept KeyError:\n    pass",
+    "another name is asked for": "if 'other' in locals():\n    pass\nnowhere",
+    "a module that lacks what is read": "random.intricate()",
+}
+_SOUND = {
+    "bound": "from mathutils import Vector\nVector((0, 0, 1))",
+    "bound further down": "def f():\n    return later\nlater = 1\nf()",
+    "global": "def g():\n    global made\n    made = 1\ng()\nmade",
+    "of a match": "match {'a': 1}:\n    case {'a': one, **rest}:\n        print(one, rest)",
+    "caught": "try:\n    unicode_\nexcept NameError:\n    pass",
+    "caught as any": "try:\n    nowhere\nexcept:\n    pass",
+    "asked for": "if 'nowhere' in locals():\n    nowhere.x",
+    "for another Blender": "if bpy.app.version < (2, 80, 0):\n    nowhere",
+    "put into the namespace": "globals()['put'] = 1\nput",
+    "run": "exec('ran = 1')\nran",
+    "all of a module": "from math import *\ncos(pi)",
+    "of the module": "__file__ = 'x'\n__name__, __file__",
+    "of a class": "class A:\n    x = __qualname__\n    def f(self):\n        return __class__\nA().f()",
+    "an annotation in a function": "def f():\n    a: Nowhere = 1\nf()",
+    "annotations that are kept": "from __future__ import annotations\ndef f(a: Nowhere) -> Nowhere:\n    pass",
+}
+
+
+def test_names_that_nothing_binds_are_found(check: Check, tmp_path: Path) -> None:
+    codes = {**_WRONG, **{code: code for code in _IMPORTED}}
+    answers = run_statements(tmp_path, [f"import bpy\n{code}" for code in codes.values()])
+    errors = {name: error.partition(":")[0] for name, (error, *_) in zip(codes, answers, strict=True)}
+    assert errors == dict.fromkeys(codes, "NameError")
+    found = {name: check("unbound-name", f"import bpy\n{code}") for name, code in codes.items()}
+    assert [name for name, findings in found.items() if not findings] == []
+
+
+def test_what_is_imported_runs(rule_checker: Checker, tmp_path: Path) -> None:
+    mended: list[str] = []
+    for code, line in _IMPORTED.items():
+        text = f"import bpy\n{code}"
+        while found := rule_checker.check(text, rules=["unbound-name"]):
+            text = apply_fixes(Source(text), found).text
+        assert line in text.splitlines()
+        mended.append(text)
+    assert [error for error, *_ in run_statements(tmp_path, mended) if error] == []
+
+
+def test_what_runs_has_no_finding(check: Check, tmp_path: Path) -> None:
+    codes = {name: code if "__future__" in code else f"import bpy\n{code}" for name, code in _SOUND.items()}
+    answers = run_statements(tmp_path, list(codes.values()))
+    assert [(name, error) for name, (error, *_) in zip(codes, answers, strict=True) if error] == []
+    assert [name for name, code in codes.items() if check("unbound-name", code)] == []
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "v = Vector((0, 0, 1))",  # a piece of a script
+        "import bmesh\nbpy.context, C.object, D.objects",  # Blender's text editor and console bind these
+        "import bpy\npass\nnowhere",  # a line for IPython in a notebook
+    ],
+)
+def test_what_is_bound_elsewhere_has_no_finding(check: Check, code: str) -> None:
+    assert check("unbound-name", code) == []
+
+
+def test_the_closest_name_is_told(check: Check) -> None:
+    (found,) = check("unbound-name", "import bpy\nlocation = 1\nprint(locaton)")
+    assert "`location`" in found.message
+
+
+def test_cells_of_a_notebook_are_one_script(check: Check) -> None:
+    source = Source("import bpy\nsize = 1\nprint(size)\n", cells=(Cell(1, 1), Cell(2, 3)))
+    assert check("unbound-name", source.text) == []
