@@ -16,6 +16,7 @@ from kb_build.symbols.paths import last_name
 from kb_check.beside import checker_beside
 from kb_check.summary import mended
 from kb_check.text.source import split_lines
+from kb_check.whole_fixes import with_whole_fixes
 from kb_serve.reader import UNLIMITED
 from kb_serve.recognise.code.wrong_values import NO_VALUE
 from kb_serve.recognise.names.likely.corrections import is_misspelling
@@ -75,10 +76,10 @@ def notes_on_code(reader: BaseReader, query: str) -> tuple[str, ...]:
     What a variable holds that the code does not bind is taken from its name, where scripts use that for some classes;
     what is told then holds for all of them. Raises BaseUnreadable.
     """
-    found = _code_in(query)
-    if found is None:
+    asked = _code_in(query)
+    if asked is None:
         return ()
-    code, tree = found
+    code, tree = asked
     checker = checker_beside(reader)
     code = f"{_bindings(tree, checker)}\n{code}"
     lines = split_lines(code)
@@ -86,7 +87,9 @@ def notes_on_code(reader: BaseReader, query: str) -> tuple[str, ...]:
     try:
         with reader.bounded(UNLIMITED):  # each line of the code may take as much as a query
             rules = (*_RULES, _NEVER_TRUE, *_NAMES, *(_GONE_NAMES if is_long else ()))
-            findings = [*_news(checker.check(code, rules=rules), lines, reader, is_long=is_long)]
+            read = checker.read(code)
+            found = with_whole_fixes(checker, read, checker.check(read, rules=rules))
+            findings = [*_news(found, lines, reader, is_long=is_long)]
     except sqlite3.DatabaseError as error:
         raise checker.names.reader.damaged(error) from error
     except Exception as error:  # what goes wrong with a rule takes no answer with it

@@ -54,8 +54,9 @@ def summarize(findings: Sequence[Finding], code: str, blender: str, max_tokens: 
     groups = _grouped(findings)
     room = max_tokens - tokens(parts[0])
     shown = 0
+    told: set[str] = set()
     for number, group in enumerate(groups):
-        part = _group_text(group, lines)
+        part = _group_text(group, lines, told)
         is_last = number == len(groups) - 1
         if number == 0:
             part = clip(part, room - _FOR_MORE)
@@ -76,7 +77,8 @@ def _grouped(findings: Sequence[Finding]) -> list[list[Finding]]:
     return list(groups.values())
 
 
-def _group_text(group: Sequence[Finding], lines: Sequence[str]) -> str:
+def _group_text(group: Sequence[Finding], lines: Sequence[str], told: set[str]) -> str:
+    """What is said of equal findings. ``told`` are the fixes that were shown before: one may mend several things."""
     first = group[0]
     numbers = list(dict.fromkeys(finding.span.line for finding in group))
     named = ", ".join(map(str, numbers[:_MOST_LINES])) + (", …" if len(numbers) > _MOST_LINES else "")
@@ -86,6 +88,9 @@ def _group_text(group: Sequence[Finding], lines: Sequence[str]) -> str:
     label = "fix" if first.fix.sure else "perhaps"
     if len(numbers) > 1:
         label += f" (line {numbers[0]})"
+    if right in told:
+        return f"{text}\n{label}: as above"
+    told.add(right)
     return f"{text}\n{label}: {_as_code(right)}"
 
 

@@ -104,12 +104,13 @@ def _checked(base: KnowledgeBase, code: str, max_tokens: int, note: str) -> Chec
     from kb_check.running.reach import RunReach, may_bring_names  # noqa: PLC0415
     from kb_check.summary import mended, ranked, summarize  # noqa: PLC0415
     from kb_check.text.source import split_lines  # noqa: PLC0415
+    from kb_check.whole_fixes import with_whole_fixes  # noqa: PLC0415
     from kb_serve.answer.budget import tokens  # noqa: PLC0415 - loaded with the base
 
     checker = checker_beside(base.reader)
     try:
         read = checker.read(code)
-        findings = ranked(checker.check(read))
+        findings = ranked(with_whole_fixes(checker, read, checker.check(read)))
     except sqlite3.DatabaseError as error:
         raise checker.names.reader.damaged(error) from error
     version = base.meta.get("blender", "")

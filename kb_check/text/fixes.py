@@ -49,18 +49,31 @@ def apply_fixes(source: Source, findings: Iterable[Finding], *, unsafe: bool = F
     nothing = Fixed(source.text, 0)
     if source.cells or source.fault:
         return nothing
-    text = Text.original(source.text)
     fixes = [each.fix for each in findings if each.fix is not None and is_fixable(each, unsafe=unsafe)]
-    newline = "\r\n" if "\r\n" in source.text[: source.text.find("\n") + 1] else "\n"
+    done = after_fixes(Text.original(source.text), fixes)
+    return Fixed(done.text.code, done.count) if done.text.code != source.text else nothing
 
-    def fixed(some: Sequence[Fix]) -> str:
+
+@dataclass(frozen=True, slots=True)
+class FixedText:
+    """A text after its fixes, with where its lines came from, and how many there were."""
+
+    text: Text
+    count: int
+
+
+def after_fixes(text: Text, fixes: Iterable[Fix]) -> FixedText:
+    """The same of a text, in order, whatever the fixes are."""
+    first_line = text.code[: text.code.find("\n") + 1]
+    newline = "\r\n" if "\r\n" in first_line else "\n"
+
+    def fixed(some: Sequence[Fix]) -> Text:
         edits = (edit for fix in some for edit in fix.edits)
-        return text.edited(replace(edit, text=edit.text.replace("\n", newline)) for edit in edits).code
+        return text.edited(replace(edit, text=edit.text.replace("\n", newline)) for edit in edits)
 
     together = list(apart(text, fixes, lambda fix: fix.edits))
-    chosen = largest(together, lambda some: is_valid(fixed(some)))
-    changed = fixed(chosen)
-    return Fixed(changed, len(chosen)) if changed != source.text else nothing
+    chosen = largest(together, lambda some: is_valid(fixed(some).code))
+    return FixedText(fixed(chosen), len(chosen))
 
 
 def write_fixed(path: Path, before: bytes, after: bytes) -> None:

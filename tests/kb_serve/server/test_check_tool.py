@@ -77,6 +77,44 @@ async def test_findings_have_a_line_the_right_name_and_the_mended_line(service: 
     assert 'fix: `ob.display_type = "WIRE"`' in reply.text
 
 
+@pytest.mark.parametrize(
+    ("line", "right", "findings"),
+    [
+        (
+            "bpy.ops.export_mesh.stl(filepath='a', use_selection=True)",
+            "bpy.ops.wm.stl_export(filepath='a', export_selected_objects=True)",
+            1,
+        ),
+        (
+            "bpy.ops.export_scene.obj(\n    filepath='a',\n    use_selection=True,\n)",
+            "bpy.ops.wm.obj_export(\n    filepath='a',\n    export_selected_objects=True,\n)",
+            2,
+        ),
+        (
+            "ob.draw_type = 'WIRE'; ob.show_x_ray = True",
+            "ob.display_type = 'WIRE'; ob.show_in_front = True",
+            2,
+        ),
+    ],
+)
+async def test_a_fix_mends_the_whole_statement(
+    service: Service, line: str, right: str, findings: int
+) -> None:
+    code = f"import bpy\nob = bpy.context.object\n{line}\n"
+    reply = found(await check(service, code))
+    assert [finding.fix for finding in reply.findings] == [right] * findings
+    assert reply.text.count("as above") == findings - 1
+    assert found(await check(service, code.replace(line, right))).findings == []
+
+
+async def test_a_likely_correction_goes_with_the_sure_fixes_of_its_statement(service: Service) -> None:
+    line = "bpy.context.object.draw_type = bpy.context.object.locatoin"
+    reply = found(await check(service, f"import bpy\n{line}"))
+    shown = {finding.sure: finding.fix for finding in reply.findings}
+    assert shown[True] == "bpy.context.object.display_type = bpy.context.object.locatoin"
+    assert shown[False] == "bpy.context.object.display_type = bpy.context.object.location"
+
+
 async def test_right_code_is_answered_by_one_line_with_what_was_checked(service: Service) -> None:
     reply = found(await check(service, "import bpy\nbpy.context.scene.frame_set(1)\n"))
     assert reply.findings == []
