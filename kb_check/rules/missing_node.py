@@ -31,6 +31,7 @@ from kb_check.scene.made_here import has_plain_operators_only, is_new
 from kb_check.script import once_per_script
 from kb_check.syntax.bindings import alias
 from kb_check.syntax.bodies import bodies
+from kb_check.syntax.literals import times_bound
 from kb_check.syntax.words import texts_but_keys
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 
     from kb_check.script import Script
 
-_NEW, _CLEAR = f"{T}Nodes.new", f"{T}Nodes.clear"
+_NEW, _CLEAR, _REMOVE = f"{T}Nodes.new", f"{T}Nodes.clear", f"{T}Nodes.remove"
 _NODES = f"{T}NodeTree.nodes"
 # The nodes that the tree of a new one has, since there is the Principled BSDF.
 _AT_FIRST = {
@@ -47,6 +48,7 @@ _AT_FIRST = {
     f"{T}Light": ("Emission", "Light Output"),
 }
 _SINCE = 2, 80
+_DEEPEST = 4  # names that stand for members of each other
 _MOST_CLEARED = 8  # trees that are followed at once: each statement is looked at for all of them
 
 
@@ -67,15 +69,49 @@ def _after_clearing(script: Script, body: list[ast.stmt]) -> Iterator[Finding]:
         if cleared:
             yield from _missing(script, statement, {text: made for text, (_, made) in cleared.items()})
             cleared = _kept(script, statement, cleared)
-        match statement:
-            case ast.Expr(value=ast.Call(func=ast.Attribute(value=nodes)) as call) if (
-                callee_path(script, call) == _CLEAR
-            ):
-                cleared[ast.unparse(nodes)] = names_in(nodes), set()
-                if len(cleared) > _MOST_CLEARED:
-                    del cleared[next(iter(cleared))]
-            case _:
-                pass
+        if nodes := _cleared(script, statement):
+            cleared[_text(script, nodes)] = names_in(nodes), set()
+            if len(cleared) > _MOST_CLEARED:
+                del cleared[next(iter(cleared))]
+
+
+def _cleared(script: Script, statement: ast.stmt) -> ast.expr | None:
+    """The nodes that a statement removes, all at once or one by one."""
+    match statement:
+        case ast.Expr(value=ast.Call(func=ast.Attribute(value=nodes)) as call) if (
+            callee_path(script, call) == _CLEAR
+        ):
+            return nodes
+        case ast.For(
+            target=ast.Name(id=node),
+            iter=ast.Call(func=ast.Name(id="list" | "tuple" | "reversed"), args=[several])
+            | ast.Subscript(value=several, slice=ast.Slice(lower=None, upper=None))
+            | several,
+            body=[
+                ast.Expr(value=ast.Call(func=ast.Attribute(value=nodes), args=[ast.Name(id=removed)]) as call)
+            ],
+        ) if removed == node and callee_path(script, call) == _REMOVE:
+            return nodes if _text(script, several) == _text(script, nodes) else None
+        case _:
+            return None
+
+
+def _text(script: Script, node: ast.expr, depth: int = _DEEPEST) -> str:
+    """An expression as it is written, with the members that names stand for in the place of those."""
+    match node:
+        case ast.Name(id=name):
+            meant = alias(script, node)
+            is_kept = depth and meant is not node and times_bound(script)[name] == 1
+            return _text(script, meant, depth - 1) if is_kept and _stays(script, meant) else name
+        case ast.Attribute(value=owner, attr=name):
+            return f"{_text(script, owner, depth)}.{name}"
+        case _:
+            return ast.unparse(node)
+
+
+def _stays(script: Script, node: ast.expr) -> bool:
+    """Whether a member is that of one thing in the whole script."""
+    return all(times_bound(script)[name] <= 1 for name in names_in(node))
 
 
 def _missing(script: Script, statement: ast.stmt, cleared: Mapping[str, set[str]]) -> Iterator[Finding]:
@@ -83,7 +119,7 @@ def _missing(script: Script, statement: ast.stmt, cleared: Mapping[str, set[str]
     for node in surely_run(statement):
         match node:
             case ast.Subscript(value=nodes, slice=ast.Constant(value=str(key)), ctx=ast.Load()):
-                made = cleared.get(ast.unparse(nodes))
+                made = cleared.get(_text(script, nodes))
                 if made is not None and not _is_named(key, made) and not is_tried(script, node, LACKS_KEY):
                     told = f"There is no node {key!r} behind `{ast.unparse(nodes)}.clear()`: `nodes.new` makes one."
                     yield Finding(RULE.id, "error", script.span(node), told, _NODES)

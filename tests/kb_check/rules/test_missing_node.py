@@ -26,6 +26,10 @@ _WRONG = {
     "beside what is made": "nodes.new('ShaderNodeMath')\nnodes['Mix']",
     "cleared": f"{_CLEAR}{_BSDF}",
     "cleared by the tree": "mat.node_tree.nodes.clear()\nout = mat.node_tree.nodes['Material Output']",
+    "cleared by another name": f"{_CLEAR}mat.node_tree.nodes['Principled BSDF']",
+    "cleared by the tree's name": f"tree = mat.node_tree\ntree.nodes.clear()\n{_BSDF}",
+    "removed one by one": f"for node in nodes:\n    nodes.remove(node)\n{_BSDF}",
+    "removed one by one, of a list": f"for node in list(mat.node_tree.nodes):\n    nodes.remove(node)\n{_BSDF}",
     "cleared, others made": f"{_CLEAR}out = nodes.new('ShaderNodeOutputMaterial')\nout.mute = True\n{_BSDF}",
 }
 _SOUND = {
@@ -42,6 +46,11 @@ _SOUND = {
     "cleared, named": f"{_CLEAR}nodes.new('ShaderNodeMath').name = 'Sum'\nnodes['Sum']",
     "cleared in a condition": f"if not nodes:\n    {_CLEAR}{_BSDF}",
     "bound again": f"{_CLEAR}nodes = bpy.data.materials.new('N').node_tree.nodes\n{_BSDF}",
+    "cleared by another name, made again": f"{_CLEAR}mat.node_tree.nodes.new('ShaderNodeBsdfPrincipled')\n{_BSDF}",
+    "another material by the same name": "mat = bpy.data.materials.new('M')\nnodes.clear()\n"
+    "mat.node_tree.nodes['Principled BSDF']",
+    "some removed": f"for node in list(nodes):\n    if node.type == 'MIX':\n        nodes.remove(node)\n{_BSDF}",
+    "others removed": f"for node in list(bpy.data.materials.new('N').node_tree.nodes):\n    print(node)\n{_BSDF}",
     "others cleared": "other = bpy.data.materials.new('N')\nother.node_tree.nodes.clear()\n" + _BSDF,
     "caught": f"{_CLEAR}try:\n    {_BSDF}\nexcept KeyError:\n    pass",
     "asked": f"{_CLEAR}print(nodes.get('Principled BSDF'), 'Principled BSDF' in nodes)",
