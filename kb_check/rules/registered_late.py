@@ -16,7 +16,8 @@ for cls in classes:
     bpy.utils.register_class(cls)
 ```
 
-So is a group that another one refers to, and that the script does not register while it registers the other.
+So is a group that another one, or a property of one of Blender's own classes, refers to, and that the script does not
+register.
 
 Not reported: orders that are not written out in one place, operators, which may be registered first, and groups that
 the script names anywhere else than where they are referred to.
@@ -31,13 +32,12 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls.resolved import callee_path
 from kb_check.findings import Finding
 from kb_check.registered.classes import own_classes
+from kb_check.registered.left_out import is_named_only_in
 from kb_check.registered.order import registrations, statements
 from kb_check.rule import Rule
-from kb_check.running.computing import NAMESPACES, RUNNING, computing
 from kb_check.running.tried import is_tried
 from kb_check.script import once_per_script
 from kb_check.syntax.literals import times_bound, written
-from kb_check.syntax.words import named_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -49,8 +49,6 @@ if TYPE_CHECKING:
 _PROPS = "bpy.props."
 _AT_ONCE = frozenset({f"{T}PropertyGroup", f"{T}AddonPreferences"})
 _GROUP, _PANEL = f"{T}PropertyGroup", f"{T}Panel"
-# Words of what finds the classes of a module.
-_FINDING = frozenset({"__subclasses__", "auto_load", "getmembers", "modules"})
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -78,20 +76,20 @@ def _check(script: Script) -> Iterator[Finding]:
         node = _element(script, statement.value) if isinstance(statement, ast.Assign) else None
         name = node.id if isinstance(node, ast.Name) else ""
         is_late = name in own and name in places and places[name].is_behind((body, number, 0))
-        if node is not None and is_late and not is_tried(script, node):
+        if node is None or name not in own or is_tried(script, node):
+            continue
+        if is_late:
             yield _finding(script, node, name, "this property, which needs it", own[name].path)
+        elif own[name].path == _GROUP and _is_left_out(script, own[name]):
+            told = (
+                f"`{name}` is never registered, and this property needs it: `register_class({name})` first."
+            )
+            yield Finding(RULE.id, "error", script.span(node), told, _GROUP)
 
 
 def _is_left_out(script: Script, one: OwnClass) -> bool:
     """Whether nothing in a script names a class but what refers to it, nor finds classes by themselves."""
-    named = {node for node in script.all(ast.Name) if node.id == one.node.name}
-    elements = {_element(script, call) for call in script.all(ast.Call)}
-    finds_classes = not _FINDING.isdisjoint(named_words(script)) or not computing(script).isdisjoint(
-        NAMESPACES | RUNNING
-    )
-    if one.node.decorator_list or finds_classes or not named <= elements:
-        return False
-    return not script.package.is_named_beside(one.node.name, script.tree)
+    return is_named_only_in(script, one, {_element(script, call) for call in script.all(ast.Call)})
 
 
 def _finding(script: Script, node: ast.expr, name: str, before: str, path: str) -> Finding:

@@ -37,6 +37,11 @@ class TEST_PT_below(bpy.types.Panel):
 _LOOP = "for cls in {}:\n    bpy.utils.register_class(cls)"
 _GIVEN = "bpy.types.Scene.settings = bpy.props.PointerProperty(type=Settings)"
 _ORDERS = {
+    _GIVEN: True,
+    f"bpy.utils.register_class(Part)\n{_GIVEN}": True,
+    f"def register():\n    {_GIVEN}\nregister()": True,
+    f"{_LOOP.format('bpy.types.PropertyGroup.__subclasses__()[-2:]')}\n{_GIVEN}": False,
+    f"def every():\n    return [Part, Settings]\n{_LOOP.format('every()')}\n{_GIVEN}": False,
     _LOOP.format("(Settings, Part)"): True,
     _LOOP.format("(Part, Settings)"): False,
     _LOOP.format("(Settings,)"): True,
