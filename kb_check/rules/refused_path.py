@@ -54,6 +54,8 @@ _CALLS = frozenset({f"{T}bpy_struct.keyframe_insert", f"{T}bpy_struct.keyframe_d
 _UNBRACKETED = (ast.Name, ast.Attribute, ast.Subscript, ast.Call)  # a dot may stand behind these as they are
 _KEPT_IN = "animation_data"
 _MODIFIER = f"{T}Modifier"
+# What Blender computes from another property when it is read, and turns into that when it is set.
+_DERIVED = {f"{T}Camera.{name}": "lens" for name in ("angle", "angle_x", "angle_y")}
 _PUT_IN = "\0"  # stands for what is put into a text
 _ALL = -1  # the index that stands for every item
 
@@ -218,6 +220,8 @@ def _instead(script: Script, symbol: Symbol) -> str:
     owner = symbol.owner
     if owner != ID and script.api.descends(owner, ID) and script.api.member(owner, _KEPT_IN) is None:
         return f" A `{owner}` has no animation data."
+    if derived := _DERIVED.get(symbol.path):
+        return f" Animate `{derived}`, from which Blender computes it."
     if symbol.owner != OBJECT:
         return ""
     if symbol.name.startswith("matrix_"):

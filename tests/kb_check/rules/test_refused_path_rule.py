@@ -216,6 +216,21 @@ def test_what_is_refused_is_reported_and_nothing_else(check: Check, tmp_path: Pa
     assert {finding.span.line for finding in check("refused-path", _CODE)} == refused
 
 
+def test_what_is_animated_in_the_place_of_what_is_computed_is_told(check: Check, tmp_path: Path) -> None:
+    start = "import bpy\ncamera = bpy.data.cameras.new('c')\n"
+    codes = [
+        f"{start}camera.keyframe_insert('angle')",
+        f"{start}camera.keyframe_insert('angle_x')",
+        f"{start}camera.keyframe_insert('lens')",
+    ]
+    errors = [bool(error) for error, *_ in run_statements(tmp_path, codes)]
+    assert errors == [True, True, False]
+    for code in codes[:2]:
+        (found,) = check("refused-path", code)
+        assert "Animate `lens`" in found.message
+    assert check("refused-path", codes[2]) == []
+
+
 def test_a_data_block_without_animation_data_is_told(check: Check) -> None:
     code = "import bpy\nbpy.data.images.new('i', 4, 4).keyframe_insert('alpha_mode')\n"
     (found,) = check("refused-path", code)
