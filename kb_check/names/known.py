@@ -231,7 +231,8 @@ class KnownNames:
             meant = self._meant(owner, name, assigned=assigned)
             # A class is called by what it is of first: what begins alike is meant rather than what says the same.
             meant = [*similar, *meant] if f"{owner}." == TYPES else meant
-            similar = _likely(name, meant, similar, labels)
+            begun = shortened(name, names) if owner.startswith(TYPES) else []
+            similar = [*dict.fromkeys((*begun, *_likely(name, meant, similar, labels)))][:_MOST_NAMED]
         if switches := [one for one in _switches(name, names) if one not in similar]:
             similar, misspelt = [*switches, *similar][:_MOST_NAMED], [*switches, *misspelt]
         span = "" if self._lookup.paths_below(owner, name) else self._notes.never(owner, name)

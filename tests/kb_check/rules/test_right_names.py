@@ -56,6 +56,21 @@ cloth = bpy.data.objects.new("m", mesh).modifiers.new("c", "CLOTH")
     assert f"bpy.types.{has_it}" in found.instead
 
 
+@pytest.mark.parametrize(
+    ("code", "meant"),
+    [
+        ("bpy.context.object.keyframe_insert(data_path='loc')", "location"),
+        ("bpy.context.object.loc = (0, 0, 1)", "location"),
+        ("bpy.data.meshes[0].verts", "vertices"),
+        ("bpy.context.scene.cam = bpy.context.object", "camera"),
+        ("bpy.data.lights[0].col = (1, 0, 0)", "color"),
+    ],
+)
+def test_the_name_that_is_shortened_is_told_first(rule_checker: Checker, code: str, meant: str) -> None:
+    (found,) = rule_checker.check(f"import bpy\n{code}", rules=["unknown-attribute"])
+    assert found.instead[0].endswith(f".{meant}")
+
+
 def test_no_fix_of_a_comparison_is_sure(rule_checker: Checker) -> None:
     code = "if bpy.context.object.type == 'GPENCIL':\n    pass"
     assert [(texts, sure) for _, texts, sure in _fixes(rule_checker, code)] == [(["'GREASEPENCIL'"], False)]
