@@ -15,6 +15,7 @@ bmesh.ops.translate(bm, vec=(0, 0, 1), verts=faces)  # reported: vertices
 variable.targets[0].id = scene  # reported: variable.targets[0].id_type = "SCENE" comes first
 loop[uv_layer] = (0, 0)  # reported: loop[uv_layer].uv = (0, 0)
 image.pixels.foreach_set(np.ones(count))  # reported: np.ones(count, dtype=np.float32)
+mesh.polygons.foreach_set("use_smooth", np.ones(count))  # reported: np.ones(count, dtype=bool)
 mix = tree.nodes.new("ShaderNodeMix")
 mix.inputs["A"].default_value = (1, 0, 0, 1)  # reported: mix.data_type = "RGBA" comes first
 ```
@@ -54,7 +55,7 @@ from kb_check.syntax.bindings import once_bound
 from kb_check.syntax.literals import items, set_of
 from kb_check.syntax.words import named_words
 from kb_check.text.brackets import bracketed
-from kb_check.values.buffers import wide_buffer
+from kb_check.values.buffers import float_buffer, wide_buffer
 from kb_check.values.conversions import misfit
 from kb_check.values.documented import layer_misfit
 from kb_check.values.given import assigned, class_values, given_values
@@ -113,6 +114,7 @@ def _check(script: Script) -> Iterator[Finding]:
     yield from _items_given(script)
     yield from _other_ids(script)
     yield from _doubles(script)
+    yield from _floats(script)
 
 
 def _doubles(script: Script) -> Iterator[Finding]:
@@ -132,6 +134,34 @@ def _doubles(script: Script) -> Iterator[Finding]:
             f"`.astype({numpy}.float32)`.",
             path, (), Fix("Make them floats of 32 bits", (edit,), sure=False) if is_plain else None,
         )  # fmt: skip
+
+
+def _floats(script: Script) -> Iterator[Finding]:
+    """Buffers of floats for properties of ints or truth values."""
+    for call in script.all(ast.Call):
+        floats = float_buffer(script, call)
+        if floats is None or is_tried(script, call, ("TypeError",)):
+            continue
+        buffer, given = floats.buffer, call.args[1]
+        fix: Fix | None = None
+        told = f"`{floats.path}` takes no floats from a buffer"
+        if isinstance(buffer, ast.Call):
+            told += f": `dtype={floats.dtype}`, or `.astype({floats.dtype})`"
+            if len(buffer.args) == 1 and "random" not in ast.unparse(buffer.func):
+                # Of a buffer that has a name, other uses may want floats.
+                fix = Fix(
+                    f"Make it {floats.dtype}", (_typed(script, buffer, floats.dtype),), sure=buffer is given
+                )
+        path = callee_path(script, call)
+        yield Finding(RULE.id, "error", script.span(given), f"{told}.", path, fix=fix)
+
+
+def _typed(script: Script, buffer: ast.Call, dtype: str) -> Edit:
+    """The edit that has a call of numpy make numbers of a kind."""
+    for keyword in buffer.keywords:
+        if keyword.arg == "dtype":
+            return Edit(script.span(keyword.value), dtype)
+    return Edit.behind(script.span(buffer.args[-1]), f", dtype={dtype}")
 
 
 def _nothing_given(script: Script, given: Given, function: str) -> Iterator[Finding]:

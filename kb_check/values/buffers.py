@@ -38,6 +38,8 @@ _CONVERTING = frozenset({"array", "asarray"})
 _OF_COLOR = 4
 _OF_DOUBLES = frozenset({"empty", "ones", "zeros"})  # unless they are told otherwise
 _DOUBLES = frozenset({"float", "np.float64", "numpy.float64", "'float64'", "np.double", "'d'"})
+_SINGLES = frozenset({"np.float32", "numpy.float32", "'float32'", "np.single", "'f'"})
+_DTYPES = {"boolean": "bool", "int": "int"}  # of the properties that take no floats
 _OF_ITEMS = frozenset(f"{owner}.{name}" for owner in (ARRAY, COLLECTION) for name in _FUNCTIONS)
 _ROWS = frozenset(f"mathutils.{name}" for name in ("Color", "Euler", "Quaternion", "Vector"))
 _RESIZING = frozenset({"append", "extend", "insert", "resize", "shape"})
@@ -207,6 +209,61 @@ def wide_buffer(script: Script, call: ast.Call) -> ast.Call | None:
             return None
     is_wide = isinstance(source, ast.Call) and _makes_doubles(source) and _element(script, array) == FLOAT
     return source if isinstance(source, ast.Call) and is_wide else None
+
+
+class Floats(NamedTuple):
+    """A buffer of floats, the path of the property that takes none, and what makes numbers that it takes."""
+
+    buffer: ast.expr
+    path: str
+    dtype: str
+
+
+def float_buffer(script: Script, call: ast.Call) -> Floats | None:
+    """The buffer that ``foreach_set`` of a collection is given, if it surely holds floats for a property of ints or
+    truth values: Blender turns none into these.
+    """
+    match call:
+        case ast.Call(
+            func=ast.Attribute(value=items, attr="foreach_set"),
+            args=[ast.Constant(value=str(attribute)), buffer],
+            keywords=[],
+        ) if callee_path(script, call) == f"{COLLECTION}.foreach_set":
+            kind = script.type_of(items)
+        case _:
+            return None
+    element = kind.element if isinstance(kind, Collection) else None
+    member = script.api.member(element.cls, attribute) if isinstance(element, Instance) else None
+    dtype = _DTYPES.get(member.symbol.type) if member else None
+    if member is None or dtype is None or not _holds_floats(script, buffer):
+        return None
+    return Floats(once_bound(script, buffer), member.symbol.path, dtype)
+
+
+def _holds_floats(script: Script, buffer: ast.expr) -> bool:
+    made = once_bound(script, buffer)
+    if isinstance(made, ast.Call):
+        return _makes_doubles(made) or _makes_singles(made)
+    match script.type_of(buffer):
+        case Sequence(kind="list" | "tuple", element=Plain(kind="float")):
+            return True
+        case Tuple(items=parts) if parts:
+            return all(isinstance(part, Plain) and part.kind == "float" for part in parts)
+        case _:
+            return False
+
+
+def _makes_singles(call: ast.Call) -> bool:
+    """Whether a call surely makes an array of numpy of floats of 32 bits."""
+    match call:
+        case ast.Call(
+            func=ast.Attribute(value=ast.Name(id="np" | "numpy"), attr=name),
+            args=[_],
+            keywords=[ast.keyword(arg="dtype", value=kind)],
+        ):
+            return name in _OF_DOUBLES and ast.unparse(kind) in _SINGLES
+        case _:
+            return False
 
 
 def _element(script: Script, array: ast.expr) -> Type | None:
