@@ -12,7 +12,7 @@ from bisect import bisect_right
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import walk
+from kb_build.flow.syntax.trees import walk
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.text.edits import Text
 from kb_check.text.fixes import after_fixes

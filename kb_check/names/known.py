@@ -13,7 +13,7 @@ from kb_check.names.likely import by_label
 from kb_serve.rank.meant_members import meant_members
 from kb_serve.recognise.names.by_words.operator_words import OperatorWords, same_operator_words
 from kb_serve.recognise.names.by_words.set_elsewhere import set_elsewhere
-from kb_serve.recognise.names.likely.corrections import by_first_word, is_misspelling, nearest
+from kb_serve.recognise.names.likely.corrections import by_first_word, is_misspelling, nearest, shortened
 from kb_serve.recognise.names.likely.likely_keywords import likely_parameters
 from kb_serve.recognise.names.likely.node_names import is_like_a_node, nodes_meant
 from kb_serve.recognise.names.named.enum_values import EnumValues

@@ -18,7 +18,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Collection, Instance, NoneValue, Plain, members
+from kb_build.flow.values.types import Collection, Instance, NoneValue, Plain, members
 from kb_build.symbols.api_names import COLLECTION
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
@@ -27,7 +27,7 @@ from kb_check.running.tried import is_tried
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.flow.types import Type
+    from kb_build.flow.values.types import Type
     from kb_check.script import Script
 
 _ERROR = ("TypeError",)

@@ -19,8 +19,8 @@ import ast
 import builtins
 from typing import TYPE_CHECKING
 
-from kb_build.flow.source_files import keeps_annotations
-from kb_build.flow.trees import walk
+from kb_build.flow.state.source_files import keeps_annotations
+from kb_build.flow.syntax.trees import walk
 from kb_check.findings import Finding, Fix
 from kb_check.names.imports import import_of
 from kb_check.rule import Rule
@@ -29,7 +29,7 @@ from kb_check.script import once_per_script
 from kb_check.syntax.definitions import FUNCTIONS
 from kb_check.syntax.literals import times_bound
 from kb_check.syntax.words import attributes
-from kb_serve.recognise.names.corrections import is_misspelling, nearest
+from kb_serve.recognise.names.likely.corrections import is_misspelling, nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

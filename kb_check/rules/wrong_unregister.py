@@ -23,7 +23,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import walk
+from kb_build.flow.syntax.trees import walk
 from kb_check.calls.resolved import callee_path
 from kb_check.findings import Finding, Fix
 from kb_check.registered.classes import own_classes

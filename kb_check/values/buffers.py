@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.blender.api import ARRAY
 from kb_build.flow.blender.facts import ELEMENT
-from kb_build.flow.values.types import FLOAT, Collection, Instance, Sequence, Tuple, Union, members
+from kb_build.flow.values.types import FLOAT, Collection, Instance, Plain, Sequence, Tuple, Union, members
 from kb_build.symbols.api_names import COLLECTION
 from kb_check.calls.resolved import callee_path
 from kb_check.syntax.bindings import once_bound
