@@ -105,7 +105,9 @@ def _misplaced(context: RuleContext, measures: Measures) -> Iterator[Finding]:
     for planned in context.planned.objects:
         name, request = planned.name, _pose(context, planned.name)
         if request is None:
-            yield R3.undecided((name,), f"no object {name!r} has a place")
+            # A field is a solver's partner, made when that is set up: R15 looks for it.
+            if planned.role != "force":
+                yield R3.undecided((name,), f"no object {name!r} has a place")
             continue
         (root,) = request.names
         try:

@@ -212,6 +212,13 @@ def test_a_planned_field_has_a_place_but_no_size(session: LiveSession) -> None:
     assert verified(session, "R2,R3", plan(position=(1, 2, 3), **planned)).passed == ("R2", "R3")
 
 
+def test_a_planned_field_that_is_not_made_yet_is_not_asked_for_its_place(session: LiveSession) -> None:
+    build(session, 'thing("Chair", box("Seat", (0, 0, 0), (1, 1, 1)))')
+    report = verified(session, "R3", plan(position=(1, 2, 3), role="force"))
+    assert report.ok
+    assert not report.findings
+
+
 def test_what_is_not_there_is_never_in_its_place(session: LiveSession) -> None:
     build(session, 'thing("Chair", box("Seat", (0, 0, 0), (1, 1, 1)))')
     report = verified(session, "R2,R3", plan())
