@@ -45,6 +45,7 @@ class LitStudio(StudioScene):
             adaptive_min_samples=4,
             use_denoising=True,
             denoiser="OPENIMAGEDENOISE",
+            denoising_quality="BALANCED",  # the highest takes as long as all else of a picture
             max_bounces=6,
             diffuse_bounces=2,
             glossy_bounces=3,

@@ -72,6 +72,17 @@ def test_shows_procedural_textures_in_a_closed_room_without_a_lamp(session: Live
     assert "Shell" in result.text, "what was cut away is not named"
 
 
+def test_stills_are_denoised_quickly(session: LiveSession) -> None:
+    used = session.run(
+        "import importlib\n"
+        "studio = importlib.import_module('simworlds_worker.preview.lit_studio').LitStudio(1)\n"
+        "with studio:\n"
+        "    used = studio.scene.cycles.denoising_quality\n"
+        "used"
+    )
+    assert used == "BALANCED"
+
+
 def test_shows_each_look_once_and_names_what_has_no_material(session: LiveSession) -> None:
     build(session, CLOSED_ROOM)
     result = session.use(material_preview.TOOL, show="objects")
