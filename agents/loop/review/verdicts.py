@@ -143,10 +143,23 @@ def _verdict(review: Review) -> str:
     return "Blocking" if review.blocking else "Not blocking"
 
 
+def _held_open(verdict: VerifierVerdict) -> str:
+    """What was found broken, apart from what could not be decided."""
+    hard = [finding for finding in verdict.findings if finding.severity == "hard"]
+    broken = sum(finding.outcome == "broken" for finding in hard)
+    found = f"has {broken} hard finding{'s' if broken != 1 else ''}" if broken else ""
+    undecided = (
+        f"could not decide {count} hard rule{'s' if count != 1 else ''}"
+        if (count := len(hard) - broken)
+        else ""
+    )
+    return f"The verifier {' and '.join(filter(None, (found, undecided)))}."
+
+
 def still_open(how: str, verdict: VerifierVerdict, review: Review) -> str:
     """What keeps a stage from being closed; "" if nothing does (paper, "Per-Stage Execution Loop")."""
     if not verdict.ok:
-        return f"The verifier has {verdict.hard} hard finding{'s' if verdict.hard != 1 else ''}."
+        return _held_open(verdict)
     if review.blocking:
         return "The review blocks."
     if review.blocks:

@@ -10,8 +10,9 @@ import teams
 from run_sessions import scenes
 from team import ABORT, DONE, FINE, REPLAN, RETRY, Team, call, last_words, run, turn_of, whose, words_of
 
+from agents.loop.review.verdicts import VerifierVerdict, still_open
 from agents.loop.review.withdrawals import as_soft
-from agents.plan.tactical import Withdrawal
+from agents.plan.tactical import Review, Withdrawal
 from agents.protocol.findings import Finding
 
 if TYPE_CHECKING:
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from run_sessions import Played
+
+    from agents.protocol.findings import Outcome
 
 pytestmark = pytest.mark.blender
 
@@ -221,6 +224,20 @@ def test_what_the_plan_states_wrongly_is_withdrawn_once_mending_was_tried(
         "Withdrawn by the planner, and not counted, though told as hard below: "
         "R3 Crate, Crate root; R5 Crate, Floor (no other is hard)." in last_words(told)
     )
+
+
+@pytest.mark.parametrize(
+    ("outcomes", "why"),
+    [
+        (("broken",), "The verifier has 1 hard finding."),
+        (("undecided",), "The verifier could not decide 1 hard rule."),
+        (("broken", "broken", "error"), "The verifier has 2 hard findings and could not decide 1 hard rule."),
+    ],
+)
+def test_what_could_not_be_decided_is_not_called_a_finding(outcomes: tuple[Outcome, ...], why: str) -> None:
+    found = tuple(Finding("R3", "hard", ("Gust",), "", outcome=outcome) for outcome in outcomes)
+    review = Review(judgements=(), blocking=False, summary="Fine.")
+    assert still_open("done", VerifierVerdict("", found), review) == why
 
 
 def test_a_part_of_what_a_rule_finds_is_withdrawn() -> None:
