@@ -189,7 +189,7 @@ def _stages(run_state: RunState) -> RenderableType:
             continue
         mark, style = _MARKS.get(state, ("?", ""))
         told = ""
-        if stage and state != "skipped":
+        if stage and state not in ("skipped", "waiting"):
             last = stage.last
             several = counted(len(stage.attempts), "attempt") if len(stage.attempts) > 1 else ""
             running = f"attempt {last.number}" if last and state == "running" else several

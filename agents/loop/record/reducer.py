@@ -174,7 +174,8 @@ def _put_step(state: RunState, step: Step, *, instead_of: Step | None = None) ->
 
     if not step.stage:
         return replace(state, steps=put(state.steps))
-    stage = state.stage(step.stage) or StageRun(step.stage)
+    # An edit's file is judged, as its last stage will be, before any stage begins.
+    stage = state.stage(step.stage) or StageRun(step.stage, "waiting")
     if not step.attempt:
         return _put(state, replace(stage, steps=put(stage.steps)))
     attempt = _attempt(stage, step.attempt)

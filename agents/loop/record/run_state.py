@@ -109,7 +109,7 @@ class Attempt:
 
 @dataclass(frozen=True, slots=True)
 class StageRun:
-    """A stage. ``state`` is "running", "closed" or "skipped"; ``steps`` came before the first attempt."""
+    """A stage. ``state`` is "waiting", "running", "closed" or "skipped"; ``steps`` came before the first attempt."""
 
     name: str
     state: str = "running"

@@ -192,6 +192,19 @@ def test_what_is_made_ready_before_the_plan_is_no_stage() -> None:
     assert [step.is_answered for step in state.steps] == [True]
 
 
+def test_a_stage_is_waiting_while_an_edits_file_is_judged_as_that_stage_will_be() -> None:
+    tape = Tape()
+    task = {"kind": "modify", "stage": "light", "targets": ["Key"], "instruction": "Dim it."}
+    tape.add("plan", edit={"title": "Dimmer", "tasks": [task], "render": {"kind": "still"}})
+    tape.add("tool.called", n=1, role="verifier", stage="light", name="blender_verify", input={})
+    tape.add("tool.answered", n=1, role="verifier", stage="light", name="blender_verify", content=[])
+    tape.ended("stopped", "")
+    state = run_state_after(tape.rows)
+    assert (state.state_of("light"), state.current) == ("waiting", None)
+    tape.add("stage.began", stage="light")
+    assert run_state_after(tape.rows[:-2] + tape.rows[-1:]).state_of("light") == "running"
+
+
 def test_resumed_run_has_not_ended() -> None:
     tape = Tape()
     tape.began()
