@@ -222,7 +222,8 @@ class BlenderSession:
                 read=setup.readable,
             )
         except OSError as error:
-            raise CannotStart(f"The run folder cannot be made: {error}") from error
+            why = error.strerror or error
+            raise CannotStart(f"The run folder {setup.run or ''} cannot be made: {why}.") from error
         try:
             blender = Supervisor(launch, folder)
         except BaseException:

@@ -119,6 +119,8 @@ def make(prompt: str, **given: Any) -> None:
     a key, try 'simworlds demo'. Exit code 0: done. 1: a stage could not be closed. 2: it failed. 3: it was stopped, and
     can be resumed.
     """
+    if not prompt.strip():
+        raise click.UsageError("PROMPT is empty: say what is to be made.")
     _begin({"prompt": prompt, **_of_model(given)}, given)
 
 
@@ -135,6 +137,8 @@ def edit(file: Path, instruction: str, reference: Path | None, **given: Any) -> 
 
     Any .blend will do. The report lists every data-block that was changed or left alone. Exit codes as of 'make'.
     """
+    if not instruction.strip():
+        raise click.UsageError("INSTRUCTION is empty: say what is to be changed.")
     asked = {"mode": "edit", "prompt": instruction, "file": file, "reference": reference, **_of_model(given)}
     _begin(asked, given)
 
@@ -149,7 +153,7 @@ def demo(name: str | None, **given: Any) -> None:
     What the roles say was written beforehand, by whom the list tells; Blender, verifier, baking and rendering are real.
     """
     from agents.loop.demos import demo_options, listed  # noqa: PLC0415 - not for --help
-    from agents.loop.errors import NoRun  # noqa: PLC0415
+    from agents.loop.errors import NoRun, RunError  # noqa: PLC0415
 
     if name is None:
         click.echo(listed())
@@ -159,6 +163,9 @@ def demo(name: str | None, **given: Any) -> None:
         asked = demo_options(name, root.with_name(f"{root.name}-input.blend"))
     except NoRun as error:
         raise click.UsageError(str(error)) from error
+    except RunError as error:
+        click.echo(f"Error: {error}", err=True)
+        sys.exit(EXITS["failed"])
     _begin(asked, given | {"root": root})
 
 
@@ -209,7 +216,8 @@ def runs() -> None:
             Console(sys.stdout).print(table)
     if found.row_count or elsewhere.row_count:
         click.echo("To continue one: simworlds resume NAME. To look at one: simworlds show NAME.")
-    click.echo(f"{'The runs are' if found.row_count else 'There are no runs'} in {runs_folder()}.")
+    none = "There are no other runs" if elsewhere.row_count else "There are no runs"
+    click.echo(f"{'The runs are' if found.row_count else none} in {runs_folder()}.")
 
 
 @click.command()

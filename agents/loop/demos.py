@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import shutil
 import tomllib
 from typing import TYPE_CHECKING, Any
 
@@ -63,10 +64,15 @@ def _settings(name: str) -> Mapping[str, Any]:
 def _build(script: Path, made: Path) -> None:
     """Runs a script in a Blender of its own, confined as always, and saves the scene."""
     work = made.with_suffix("")
-    with ToolClient(SessionSetup(best_sandbox(), run=work, tell=_LOG.info)) as tools:
-        code = tools.call("blender_execute", {"code": script.read_text("utf-8"), "timeout": 300})
-        saved = tools.call("blender_save", {"name": made.stem})
-    for outcome in (code, saved):
-        if outcome.failed:
-            raise RunError(f"The scene to edit could not be built: {outcome.text}")
-    (work / made.name).replace(made)
+    is_ours = not work.exists()
+    try:
+        with ToolClient(SessionSetup(best_sandbox(), run=work, tell=_LOG.info)) as tools:
+            code = tools.call("blender_execute", {"code": script.read_text("utf-8"), "timeout": 300})
+            saved = tools.call("blender_save", {"name": made.stem})
+        for outcome in (code, saved):
+            if outcome.failed:
+                raise RunError(f"The scene to edit could not be built: {outcome.text}")
+        (work / made.name).replace(made)
+    finally:
+        if is_ours:
+            shutil.rmtree(work, ignore_errors=True)

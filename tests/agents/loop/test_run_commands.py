@@ -16,6 +16,7 @@ from run_sessions import answered, at_home
 from running import run_here
 from team import ABORT, Team
 
+from agents.loop.demos import demo_options
 from agents.loop.record.elsewhere import runs_elsewhere
 from agents.loop.record.journal import NAME
 from simworlds.cli import main
@@ -98,7 +99,8 @@ def test_a_limit_that_is_reached_is_exit_code_3(home: Path, tmp_path: Path) -> N
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (("make", ""), "prompt"),
+        (("make", ""), "PROMPT is empty: say what is to be made."),
+        (("make", " "), "PROMPT is empty: say what is to be made."),
         (("make", "A crate", "--role-model", "painter=x"), "--role-model takes ROLE=NAME"),
         (("make", "A crate", "--max-cost", "-1"), "--max-cost"),
         (("make", "A crate", "--max-minutes", "0"), "--max-minutes"),
@@ -109,6 +111,10 @@ def test_a_limit_that_is_reached_is_exit_code_3(home: Path, tmp_path: Path) -> N
         (("replay", "/nowhere/at/all"), "does not hold a record"),
         (("show", "/nowhere/at/all"), "is not a run"),
         (("make", "A crate", "--run", "/proc/nothing"), "cannot be used as the folder of a run"),
+        (
+            ("demo", "edit", "--run", "/proc/nothing"),
+            "folder /proc/nothing-input cannot be made: No such file",
+        ),
     ],
 )
 def test_errors_are_shown_without_a_traceback(
@@ -126,6 +132,13 @@ def test_demo_without_a_name_lists_the_demos(alone: None) -> None:
     assert result.exit_code == 0
     assert "simworlds demo dominoes" in result.stdout
     assert "Each plays a transcript against a real Blender" in result.stdout
+
+
+@pytest.mark.blender
+def test_of_a_demos_file_to_edit_nothing_is_left_but_the_file(tmp_path: Path) -> None:
+    made = tmp_path / "run-input.blend"
+    demo_options("edit", made)
+    assert list(tmp_path.iterdir()) == [made]
 
 
 def test_resume_of_a_finished_run_says_where_its_result_is(
@@ -209,6 +222,7 @@ def test_runs_in_folders_of_their_users_choice_are_listed_until_these_are_gone(
         assert result.exit_code == 0
         assert str(run) in result.stdout
         assert str(tmp_path / "nothing") not in result.stdout
+        assert "There are no other runs in" in result.stdout
         narrow = CliRunner().invoke(main, ["runs"], env={"COLUMNS": "80"}).stdout
         assert re.search(r" done .* (\d{4}-\d\d-\d\d|\d\d:\d\d) *$", narrow, re.MULTILINE)
         shutil.rmtree(run)

@@ -262,6 +262,14 @@ def test_a_frame_that_blender_does_not_have_is_refused(tmp_path: Path) -> None:
     assert "99999999999 is not in the range" in done.stderr
 
 
+def test_of_a_file_that_is_not_there_nothing_else_is_told(tmp_path: Path) -> None:
+    for name in ("plan.json", "journal.jsonl"):
+        (tmp_path / name).write_text("{}")
+    (tmp_path / "checkpoints").mkdir()
+    done = verify(tmp_path, "checkpoints/absent.blend")
+    assert (done.returncode, done.stderr) == (2, "Error: There is no file checkpoints/absent.blend.\n")
+
+
 @pytest.mark.parametrize(
     ("words", "why"),
     [
