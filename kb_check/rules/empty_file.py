@@ -10,7 +10,8 @@ bpy.ops.render.render()  # reported: the scene has no camera before scene.camera
 
 Where a script only deletes all objects, their names and the scene's camera are gone.
 
-Of what a new file has not either, a script that empties none is told, too, as a note: it may be run with another file.
+Of what a new file has not either, a script that empties none is told, too: as a note where it does not read the factory
+settings, since it may be run with another file.
 
 ```python
 bpy.context.scene.compositing_node_group.nodes.clear()  # reported; `use_nodes = True` makes no tree since 5.0
@@ -37,7 +38,7 @@ from kb_check.running.background import is_called_by_others, lines_of_others
 from kb_check.running.out_of_sight import knows_all
 from kb_check.running.read_pointers import read_from
 from kb_check.running.tried import is_tried
-from kb_check.scene.emptied import empties_only, is_emptied_before
+from kb_check.scene.emptied import empties_only, is_emptied_before, resets_only
 from kb_check.script import once_for_each
 from kb_check.syntax.words import asked_names, keywords_and_texts, named_words, stored_names, texts_but_keys
 
@@ -124,12 +125,19 @@ def _check(script: Script) -> Iterator[Finding]:
             yield _empty_finding(script, node, path, _emptied(_EMPTY[path].what), "warning")
         yield from _looked_up(script)
         yield from _rendered(script)
+    reset: dict[str, ast.Attribute] = {}
+    if resets_only(script) and not empties_only(script, "file"):
+        read = _read(script, _NEW)
+        reset = _first(one for one in read if _is_run_later(script, one.row, one.node, "file"))
+        for path, node in reset.items():
+            yield _empty_finding(script, node, path, "in a new file", "warning")
     is_others = empties_only(script, "file") or is_called_by_others(script)
     if not is_others and "libraries" not in named_words(script):
         given = lines_of_others(script)
-        read = _first(one for one in _read(script, _NEW) if one.node.lineno not in given)
-        for path, node in read.items():
-            yield _empty_finding(script, node, path, "in a new file", "note")
+        first = _first(one for one in _read(script, _NEW) if one.node.lineno not in given)
+        for path, node in first.items():
+            if path not in reset:
+                yield _empty_finding(script, node, path, "in a new file", "note")
 
 
 def _emptied(what: What) -> str:

@@ -6,6 +6,8 @@ fluid.fluid_type = "FLOW"
 fluid.domain_settings.domain_type = "LIQUID"  # reported: fluid.fluid_type = 'DOMAIN' makes domain_settings
 nodes = obj.modifiers.new("Scatter", "NODES")
 nodes.node_group.interface  # reported: nodes.node_group = tree fills it
+bpy.ops.object.modifier_add(type="NODES")
+bpy.context.object.modifiers[-1].node_group.nodes  # reported, too
 cube = bpy.data.objects.new("Cube", bpy.data.meshes.new("Cube"))
 cube.pose.bones  # reported: only an object with an Armature has it
 strip = action.layers.new("Moves").strips.new(type="KEYFRAME")
@@ -38,6 +40,7 @@ from kb_check.rule import Rule
 from kb_check.running.out_of_sight import is_untouched, knows_all
 from kb_check.running.read_pointers import read_pointer
 from kb_check.running.tried import is_tried
+from kb_check.scene.added_modifier import read_from_no_tree
 from kb_check.scene.made_here import (
     has_new_data,
     has_plain_operators_only,
@@ -66,6 +69,8 @@ _WORD = re.compile(r"\w+")
 _GENERAL = frozenset({"object", "mesh", "scene", "anim"})  # modules whose operators fill many things
 # Pointers of objects that are there with data of one class only.
 _ONLY_WITH = {f"{T}Object.pose": f"{T}Armature"}
+_TREE = f"{T}NodesModifier.node_group"
+_FILL_TREE = 'modifier.node_group = bpy.data.node_groups.new("Geometry Nodes", "GeometryNodeTree")'
 _ACTIVE_ONE = "active"
 _MAKING_MODIFIERS = ("Modifiers.new", "modifier_add")
 _MAKING = frozenset({"new", "modifier_add"})
@@ -101,6 +106,13 @@ def _check(script: Script) -> Iterator[Finding]:
         if not is_tried(script, node):
             reported.add(ast.unparse(pointer))
             yield Finding(RULE.id, "warning", script.name_span(node), message, symbol.path)
+    for node in read_from_no_tree(script) if knows_all(script) else ():
+        if ast.unparse(node.value) not in reported and not is_tried(script, node):
+            reported.add(ast.unparse(node.value))
+            message = (
+                f"`{_TREE}` is None on what is new, and nothing in this script fills it: `{_FILL_TREE}` does."
+            )
+            yield Finding(RULE.id, "warning", script.name_span(node), message, _TREE)
 
 
 def _empty(script: Script, pointer: ast.Attribute) -> Symbol | None:

@@ -22,17 +22,28 @@ _BACKGROUND = "bpy.app.background"
 def is_called_by_others(script: Script) -> bool:
     """Whether a script is an add-on or a module, which others call, or knows that there may be no window."""
     body = script.tree.body
-    if any(isinstance(node, ast.FunctionDef) and node.name == "register" for node in body) or not _runs(body):
+    if any(isinstance(node, ast.FunctionDef) and node.name == "register" for node in body):
+        return True
+    if not _runs(script, body):
         return True
     return any(_BACKGROUND in row.symbols for row in script.resolutions("attribute", "name"))
 
 
-def _runs(body: Sequence[ast.stmt]) -> bool:
-    """Whether a module calls anything when it is run."""
+def _runs(script: Script, body: Sequence[ast.stmt]) -> bool:
+    """Whether a module calls anything, or sets something of Blender's data, when it is run."""
     return any(
         isinstance(getattr(node, "value", None), ast.Call)
-        or (not isinstance(node, APART) and any(map(_runs, bodies_of(node))))
+        or _sets(script, node)
+        or (not isinstance(node, APART) and any(_runs(script, inner) for inner in bodies_of(node)))
         for node in body
+    )
+
+
+def _sets(script: Script, node: ast.stmt) -> bool:
+    targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+    return any(
+        isinstance(target, ast.Attribute) and isinstance(script.type_of(target.value), Instance)
+        for target in targets
     )
 
 

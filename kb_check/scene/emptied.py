@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
     from kb_check.script import Script
 
-EMPTYING = frozenset({"bpy.ops.wm.read_factory_settings", "bpy.ops.wm.read_homefile"})
+_FACTORY = "bpy.ops.wm.read_factory_settings"
+EMPTYING = frozenset({_FACTORY, "bpy.ops.wm.read_homefile"})
 What = Literal["file", "objects"]  # that is emptied: an empty file has no objects
 
 
@@ -37,6 +38,13 @@ def empties_only(script: Script, what: What) -> bool:
     calls = [node for node in script.all(ast.Call) if callee_path(script, node) in EMPTYING]
     deletes = what == "objects" and bool(deleting_all(script) | deleting_selected(script))
     return (bool(calls) or deletes) and all(map(_is_empty, calls))
+
+
+@once_per_script
+def resets_only(script: Script) -> bool:
+    """Whether every file that a script reads is an empty one or that of the factory, and it reads one."""
+    calls = [node for node in script.all(ast.Call) if callee_path(script, node) in EMPTYING]
+    return bool(calls) and all(_is_empty(call) or callee_path(script, call) == _FACTORY for call in calls)
 
 
 def _is_empty(call: ast.Call) -> bool:

@@ -53,6 +53,27 @@ def test_what_blender_refuses_in_an_empty_file_is_found(rule_checker: Checker, t
     assert len(refused) == 16
 
 
+@pytest.mark.parametrize(
+    ("before", "severity"),
+    [
+        ("bpy.ops.wm.read_factory_settings()", "warning"),
+        ("bpy.ops.wm.read_factory_settings(use_empty=False)", "warning"),
+        ("bpy.ops.wm.read_homefile()", "note"),
+        ("bpy.context.scene.frame_end = 20", "note"),
+    ],
+)
+def test_what_a_new_file_lacks_is_sure_behind_the_factory_settings(
+    rule_checker: Checker, tmp_path: Path, before: str, severity: str
+) -> None:
+    line = "bpy.context.scene.rigidbody_world.time_scale = 2"
+    *_, (error, _, _) = run_statements(tmp_path, ["import bpy", before, line])
+    assert error.startswith("AttributeError")
+    found = rule_checker.check(f"import bpy\n{before}\n{line}\n", rules=["empty-file"])
+    assert [one.severity for one in found] == [severity]
+    filled = f"import bpy\n{before}\nbpy.ops.rigidbody.world_add()\n{line}\n"
+    assert rule_checker.check(filled, rules=["empty-file"]) == []
+
+
 def test_what_a_new_file_lacks_is_noted_where_none_is_emptied(rule_checker: Checker, tmp_path: Path) -> None:
     lines = [line for line in _READING if "bpy.data" not in line or "scenes[0]" in line]
     answers = run_statements(tmp_path, ["import bpy", *lines])[1:]
