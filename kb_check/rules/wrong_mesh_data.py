@@ -98,7 +98,7 @@ def _missing(script: Script, rows: list[ast.Tuple | ast.List], count: int) -> It
     for node in (part for row in rows for part in row.elts):
         index = number(script, node)
         if isinstance(index, int) and not 0 <= index < count:
-            told = f"There is no vertex {index}: they are 0 to {count - 1}. This makes an invalid mesh."
+            told = f"There is no vertex {index} among {count}, counted from 0: this makes an invalid mesh."
             yield Finding(RULE.id, "warning", script.span(node), told, _PATH)
             return
 
