@@ -63,7 +63,7 @@ def test_what_a_foreign_addon_may_register_is_no_error(rule_checker: Checker, en
 
 
 @pytest.mark.parametrize(
-    "enabling", ["", "addon_utils.enable(__package__)", 'settings.enable("stranger")']
+    "enabling", ["", "addon_utils.enable(__package__)", 'def turn_on(settings):\n    settings.enable("stranger")']
     + [f'bpy.ops.preferences.addon_enable(module="{name}")' for name in ("rigify", "io_scene_fbx")],
 )  # fmt: skip
 def test_without_one_nothing_may(rule_checker: Checker, enabling: str) -> None:
