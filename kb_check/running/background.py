@@ -7,6 +7,7 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from kb_build.flow.syntax.trees import APART, called_name, children, run_with
+from kb_build.flow.values.types import Instance
 from kb_check.running.line_ranges import LineRanges
 from kb_check.script import once_per_script
 from kb_check.syntax.bodies import bodies_of
