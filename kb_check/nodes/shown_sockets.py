@@ -13,7 +13,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.flow.values.types import Instance
+from kb_build.flow.values.types import Instance, members
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import usual_default
 from kb_build.symbols.records import SHOWN_WHEN
@@ -50,11 +50,19 @@ def socket_classes(script: Script, node: ast.expr) -> Shown | None:
     sockets = [symbol for path in row.symbols if (symbol := script.api.symbols.symbol(path))]
     if not isinstance(owner, ast.Name) or not sockets or len(sockets) < len(row.symbols):
         return None
+    if _may_be_any(script, owner):
+        return None
     deciding = {name for socket in sockets for name in (*showing(socket), *socket.type_settings)}
     known = _known(script, owner, sockets[0].owner, deciding, node)
     found = [_class_of(script, socket, known) for socket in sockets if not _is_hidden(socket, known)]
     so = f" while {_said(known)}" if known else ""
     return Shown(tuple(dict.fromkeys(found)), so) if found and all(found) else None
+
+
+def _may_be_any(script: Script, node: ast.expr) -> bool:
+    """Whether a node may also be of any kind, as one whose type the script computes: its sockets are not known."""
+    kinds = (one for one in members(script.type_of(node)) if isinstance(one, Instance))
+    return any(script.api.descendants(one.cls) for one in kinds)
 
 
 def hidden_by_settings(script: Script, sockets: list[Symbol], node: ast.Subscript) -> str:

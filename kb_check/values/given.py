@@ -101,7 +101,7 @@ def class_values(script: Script) -> list[Given]:
 
 def _assignments(script: Script) -> Iterator[Given]:
     for row in script.resolutions("store"):
-        paths = row.symbols or row.possible
+        paths = tuple(dict.fromkeys((*row.symbols, *row.possible)))
         sure = (
             row.sure
             and not row.is_ready_for(*REFUSES)

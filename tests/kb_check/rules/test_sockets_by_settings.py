@@ -15,6 +15,8 @@ from whole import IS_WHOLE
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from conftest import Check
+
     from kb_check.checker import Checker
 
 # Of each node: which of all its keys are refused in the states that one or two of its settings make.
@@ -114,6 +116,24 @@ _NODE = """
     tree = bpy.data.node_groups.new("tree", "GeometryNodeTree")
     node = tree.nodes.new("ShaderNodeVectorMath")
 """
+
+
+_OF_ANY_KIND = """\
+import bpy
+def stretch(tree, kind, factor):
+    node = tree.nodes.new("ShaderNodeTexNoise")
+    if kind:
+        node = tree.nodes.new(kind)
+    node.inputs["Scale"].default_value = factor
+stretch(bpy.data.materials.new("m").node_tree, input(), (1, 2, 3))
+"""
+
+
+def test_a_node_that_may_be_any_has_sockets_of_any_type(check: Check) -> None:
+    assert not check("wrong-type", _OF_ANY_KIND)
+    assert check(
+        "wrong-type", _OF_ANY_KIND.replace("    if kind:\n        node = tree.nodes.new(kind)\n", "")
+    )
 
 
 @pytest.mark.parametrize(
