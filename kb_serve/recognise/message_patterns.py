@@ -60,7 +60,7 @@ NO_SEQUENCE = re.compile(
 )
 TOO_MANY = re.compile(
     r"(?<![\w.])(?P<function>\w++(?:\.\w++)*+)(?:\(\):? takes (?:at most|exactly)| expected at most) "
-    r"(?P<most>\d+) arguments?[,\s(]+(?:got )?(?P<given>\d+)"
+    r"(?P<most>\d+)(?: positional)? arguments?[,\s(]+(?:got )?(?P<given>\d+)"
 )
 BY_NAME_ONLY = re.compile(
     r"(?<![\w.])(?P<function>\w++(?:\.\w++)++)\(\): required parameter \"(?P<name>\w+)\" "
@@ -214,9 +214,10 @@ def is_message(query: str) -> bool:
     return bool(_EXCEPTION.search(query) or _REPORT.search(query) or _WORDING.search(query))
 
 
-def has_failed_otherwise(query: str) -> bool:
-    """Whether a message is of something else than a name that is missing."""
-    return bool(_FAILED_OTHERWISE.search(query))
+def says_what_failed(query: str) -> bool:
+    """Whether a message tells what was lacking, or is of something else than a name that is missing."""
+    lacking = (HAS_NO, TYPE_HAS_NO, MODULE_HAS_NO, READ_ONLY)
+    return bool(_FAILED_OTHERWISE.search(query)) or any(pattern.search(query) for pattern in lacking)
 
 
 def classes_of_things(query: str) -> frozenset[str]:

@@ -24,8 +24,8 @@ from kb_serve.recognise.code.wrong_values import wrong_values
 from kb_serve.recognise.message_patterns import (
     BAD_ENUM,
     classes_of_things,
-    has_failed_otherwise,
     is_message,
+    says_what_failed,
     without_callers_names,
     without_values,
     without_wording,
@@ -129,21 +129,6 @@ def _is_told(value: str, recognition: Recognition) -> bool:
     return any(removed.path.endswith(f":{value}") for removed in recognition.removed)
 
 
-def _leave_what_it_tells(
-    lacked: list[MissingName], recognition: Recognition, *, failed_otherwise: bool
-) -> None:
-    """Leaves out of the missing names all but what a message says is ``lacked``, where it says what failed: what else
-    the line lacks, Python has found there, as add-ons register it, or has not come to.
-    """
-    told = {last_name(match.id) for match in recognition.matches if match.why == "error message"}
-    if failed_otherwise or lacked:
-        recognition.missing, recognition.doubted = lacked, None
-        return
-    recognition.missing = [one for one in recognition.missing if one.name not in told]
-    if recognition.doubted and recognition.doubted.name in told:
-        recognition.doubted = None
-
-
 class Recogniser:
     """Recognises names against one base."""
 
@@ -182,8 +167,9 @@ class Recogniser:
             is_plain = code == query and "/" not in query
             found = chains if is_plain else own.without(with_bindings(code, _outside_of_paths(code)))
             self._expressions.recognise(found, recognition)
-            if is_message(query):
-                _leave_what_it_tells(lacked, recognition, failed_otherwise=has_failed_otherwise(query))
+            if lacked or (is_message(query) and says_what_failed(query)):
+                # What else the line lacks that failed, Python has found there, or has not come to.
+                recognition.missing, recognition.doubted = lacked, None
             self._enum_values.recognise(text, recognition, classes_of_things(query))
             self._removed_values(text, recognition)
             described = "" if is_message(query) else asked_of_inputs(query)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.messages.guides import EXTENSIONS, ON_WHEELS, add_guide
 from kb_serve.recognise.messages.nameless.files import NO_SUCH_ADDON
+from kb_serve.recognise.messages.of_older import of_older
 from kb_serve.recognise.resolving.chain_starts import ROOTS
 
 if TYPE_CHECKING:
@@ -46,6 +47,8 @@ class Imports:
             if _ENABLING in query:  # which names no package that a script lacks
                 recognition.add(_ENABLED_BY, 0.97, "error message")
                 recognition.notes.append(NO_SUCH_ADDON)
+            elif note := self._of_older(match["module"]):
+                recognition.notes.append(note)
             elif not self.tell_if_gone(match["module"], recognition):
                 self._tell_if_renamed(match["module"], recognition)
                 self._tell_how_brought(match["module"], recognition)
@@ -53,6 +56,11 @@ class Imports:
             self.tell_if_gone(f"{match['module']}.{match['name']}", recognition)
         for match in forms.first_matches(forms.NOT_DEFINED, query):
             self._tell_where(match["name"], recognition)
+
+    def _of_older(self, module: str) -> str:
+        """That this Blender has a module which that of a message has not yet; empty where it is no newer one."""
+        entry = self._reader.entry(module)
+        return of_older(module, self._reader) if entry and entry.kind == "module" else ""
 
     def _tell_if_renamed(self, module: str, recognition: Recognition) -> None:
         """What Blender calls one of its internal modules now, where it is not known since when: with an underscore."""

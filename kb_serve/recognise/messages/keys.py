@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 _OF_COLLECTIONS = "bpy_prop_collection"
 _OF_PROPERTIES = (f"{STRUCT}.get", f"{TYPES}ID.bl_system_properties_get")  # where they are read
 
+_LINKING = f"{TYPES}NodeLinks.new"
 _FEW = 3
 _LOOKED_INTO = r"""\.(\w+)\[['"]{}['"]\]"""
 _EDIT_BONES = re.compile(r"\bedit_bones\b")
@@ -108,7 +109,13 @@ class Keys:
             recognition.add(path, 0.98 - 0.01 * rank, "error message")
         there = [match.id for match in recognition.matches if match.id.endswith(f'["{name}"]')]
         recognition.notes += filter(None, (of_older(path, self._reader) for path in there[:1]))
-        if recognition.removed or any(match.sure >= 0.9 for match in recognition.matches):
+        hidden = [one for one in sockets_by_setting(name, self._reader) if one.path in there]
+        recognition.notes += on_setting(hidden)
+        if collection == _OF_COLLECTIONS:
+            tell_of_the_newer_node(name, self._reader, recognition)
+        # Sockets are mostly asked for to be linked.
+        sure = {match.id for match in recognition.matches if match.sure >= 0.9} - {_LINKING}
+        if recognition.removed or sure:
             return
         if collection != _OF_COLLECTIONS:
             recognition.notes.append(
@@ -118,7 +125,6 @@ class Keys:
             for rank, path in enumerate(_OF_PROPERTIES):
                 recognition.add(path, 0.9 - 0.01 * rank, "error message")
             return
-        tell_of_the_newer_node(name, self._reader, recognition)
         still_taken = self._sockets.explain(name, query, recognition)
         if not still_taken and not recognition.removed:
             recognition.add(f"{COLLECTION}.get", 0.9, "error message")

@@ -18,6 +18,7 @@ _FIRST = {
         "since 5.0: the message is an older one's. There, use `bpy.types.Bone.select`."
     ),
     "RuntimeError: Error: Node type ShaderNodeSeparateColor undefined": "since 3.3: the message is an older one's.",
+    "ModuleNotFoundError: No module named 'bl_math'": "the message is an older one's.",
     "AttributeError: 'module' object has no attribute 'ImageStrip'": "the message is an older one's.",
     'TypeError: UILayout.label(): error with keyword argument "icon" -  enum "WARNING_LARGE" not found in '
     "('NONE', 'QUESTION', 'ERROR')": "Blender 5.1 takes `WARNING_LARGE` for",
@@ -50,6 +51,12 @@ _FIRST = {
     "TypeError: bpy_struct: item.attr = val:\nnode.outputs[0].default_value = 0.5": "several are wanted",
     'KeyError: \'bpy_prop_collection[key]: key "GeometryNodes" not found\'\nobj.modifiers["GeometryNodes"]': (
         "The object has no modifier of that name"
+    ),
+    'KeyError: \'bpy_prop_collection[key]: key "Color2" not found\'\nlinks.new(a.outputs[0], mix.inputs["Color2"])': (
+        'which has no `inputs["Color2"]`'
+    ),
+    'KeyError: \'bpy_prop_collection[key]: key "Depth" not found\'\nlinks.new(layers.outputs["Depth"], blur.inputs[0])': (
+        "only with `view_layer.use_pass_z=True`"
     ),
     # Whose they are.
     "AttributeError: module 'bpy' has no attribute 'ops'": "`import bpy` brings `bpy.ops`",
@@ -92,6 +99,7 @@ def test_the_cause_is_told_above_the_page(kb: KnowledgeBase, message: str, said:
         "ReferenceError: StructRNA of type Scene has been removed\nsettings = scene.my_settings",
         "TypeError: '_PropertyDeferred' object is not subscriptable\nname = preferences.my_settings[1]",
         "AttributeError: 'Keyframe' object has no attribute 'co_ui'\nx = key.co_ui.x",
+        "AttributeError: 'str' object has no attribute 'scene'\nif context.scene.my_settings.on:",
     ],
 )
 def test_what_the_line_has_besides_is_not_denied(kb: KnowledgeBase, message: str) -> None:

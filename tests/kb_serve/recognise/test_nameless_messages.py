@@ -182,6 +182,8 @@ bpy.data.images.new("i", 8, 8).pixels.foreach_get(numpy.empty(256))
 bpy.data.images.new("i", 8, 8).pixels.foreach_set([0.0] * 3)
 stored()
 range(1.5)
+round("a")
+ob in bpy.data.objects
 (lambda scene, depsgraph: None)(scene)
 x, y = ob.location
 bpy.ops.object.select_all("SELECT")

@@ -22,6 +22,17 @@ _OF_OPERATORS = (
 )
 PYTHON = (
     NamelessMessage(
+        ("type str doesn't define __round__ method",),
+        (f"{T}NodeSocketMenu.default_value",),
+        "The value is a text, as that of a menu's socket is: ask `isinstance(value, str)`, or `socket.type == 'MENU'`, "
+        "before.",
+    ),
+    NamelessMessage(
+        ("bpy_prop_collection.__contains__: expected a string",),
+        (f"{T}bpy_prop_collection.get", f"{T}bpy_prop_collection.values"),
+        "`in` asks a collection for names: `thing.name in collection`, or `thing in collection.values()`.",
+    ),
+    NamelessMessage(
         ("'float' object cannot be interpreted as an integer",),
         (f"{T}Action.frame_range", f"{T}Scene.frame_set"),
         "`range()` and indices take whole numbers: `int(value)`, `count // 2`. Frames of an action are floats: "
