@@ -55,7 +55,7 @@ _FIRST = {
     'KeyError: \'bpy_prop_collection[key]: key "Color2" not found\'\nlinks.new(a.outputs[0], mix.inputs["Color2"])': (
         'which has no `inputs["Color2"]`'
     ),
-    'KeyError: \'bpy_prop_collection[key]: key "Depth" not found\'\nlinks.new(layers.outputs["Depth"], blur.inputs[0])': (
+    'KeyError: \'bpy_prop_collection[key]: key "Depth" not found\'\nlinks.new(layers.outputs["Depth"], b.inputs[0])': (
         "only with `view_layer.use_pass_z=True`"
     ),
     # Whose they are.
