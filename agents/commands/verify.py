@@ -109,9 +109,8 @@ def _verify(
     from agents.protocol.report.summary import exit_code  # noqa: PLC0415
     from simworlds.sandbox.errors import BlenderError  # noqa: PLC0415 - not for --help
 
-    if not scene.is_file():
-        raise _CannotCheckError(f"There is no file {scene}.")
-    plan = _plan_for(scene, choices["plan"])
+    # Of a file that is not there, no plan is looked for, nor told that there is none.
+    plan = _plan_for(scene, choices["plan"]) if choices["plan"] or scene.exists() else None
     image: Path | None = choices["image"]
     if image is not None:
         _check_image(image)

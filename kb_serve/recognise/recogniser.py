@@ -379,7 +379,7 @@ class Recogniser:
         )
         if not is_meant and self._within(missing, recognition, on_new=bool(otherwise)):
             return
-        is_like = bool(otherwise) or any(name.startswith(f"{missing.name}_") for name in names)
+        is_like = bool(otherwise) or any(name.startswith(missing.name) for name in names)
         if not (is_meant or is_like) and self._of_another_kind(missing, recognition):
             return
         for place, path in enumerate(otherwise):
