@@ -61,8 +61,9 @@ def socket_classes(script: Script, node: ast.expr) -> Shown | None:
 
 def _may_be_any(script: Script, node: ast.expr) -> bool:
     """Whether a node may also be of any kind, as one whose type the script computes: its sockets are not known."""
-    kinds = (one for one in members(script.type_of(node)) if isinstance(one, Instance))
-    return any(script.api.descendants(one.cls) for one in kinds)
+    kind = script.type_of(node)
+    kinds = members(kind) if kind else ()
+    return any(isinstance(one, Instance) and script.api.descendants(one.cls) for one in kinds)
 
 
 def hidden_by_settings(script: Script, sockets: list[Symbol], node: ast.Subscript) -> str:
