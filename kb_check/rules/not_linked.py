@@ -45,9 +45,11 @@ def _check(script: Script) -> Iterator[Finding]:
     for body in bodies(script):
         new: set[str] = set()
         for statement in body:
-            if new:
+            if new and _may_link(script, statement):
+                new = set()
+            elif new:
                 yield from _unlinked(script, statement, new)
-                new = set() if _may_link(script, statement) else new - {*bound_in(statement)}
+                new -= {*bound_in(statement)}
             match statement:
                 case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call() as call) if callee_path(
                     script, call
@@ -58,10 +60,8 @@ def _check(script: Script) -> Iterator[Finding]:
 
 
 def _unlinked(script: Script, statement: ast.stmt, new: set[str]) -> Iterator[Finding]:
-    """What a statement unlinks from collections that are new; nothing of one that links, or defines a function."""
-    if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)) or _may_link(
-        script, statement
-    ):
+    """What a statement unlinks from collections that are new; nothing of one that defines a function or a class."""
+    if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
         return
     for node in walk(statement):
         match node:

@@ -39,6 +39,7 @@ from kb_check.running.tried import is_tried
 from kb_check.script import once_per_script
 from kb_check.syntax.literals import number, written
 from kb_check.values.data_paths import follow, item, size
+from kb_serve.recognise.changed_by import ANIMATED_BY
 from kb_serve.recognise.resolving.subscripts import INPUT_KEY, NODES_MODIFIER, CustomProperties
 
 if TYPE_CHECKING:
@@ -55,7 +56,6 @@ _UNBRACKETED = (ast.Name, ast.Attribute, ast.Subscript, ast.Call)  # a dot may s
 _KEPT_IN = "animation_data"
 _MODIFIER = f"{T}Modifier"
 # What Blender computes from another property when it is read, and turns into that when it is set.
-_DERIVED = {f"{T}Camera.{name}": "lens" for name in ("angle", "angle_x", "angle_y")}
 _PUT_IN = "\0"  # stands for what is put into a text
 _ALL = -1  # the index that stands for every item
 
@@ -220,13 +220,11 @@ def _instead(script: Script, symbol: Symbol) -> str:
     owner = symbol.owner
     if owner != ID and script.api.descends(owner, ID) and script.api.member(owner, _KEPT_IN) is None:
         return f" A `{owner}` has no animation data."
-    if derived := _DERIVED.get(symbol.path):
-        return f" Animate `{derived}`, from which Blender computes it."
-    if symbol.owner != OBJECT:
-        return ""
-    if symbol.name.startswith("matrix_"):
+    if owner == OBJECT and symbol.name.startswith("matrix_"):
         return " Animate `location`, `rotation_euler` and `scale`."
-    return " Animate `scale`." if symbol.name == "dimensions" else ""
+    other = ANIMATED_BY.get(symbol.path)
+    computed = "" if owner == OBJECT else ", from which Blender computes it"
+    return f" Animate `{other}`{computed}." if other else ""
 
 
 def _of_index(script: Script, call: CallSite, node: ast.expr, given: ast.expr) -> _Fault | None:

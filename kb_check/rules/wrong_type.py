@@ -123,16 +123,19 @@ def _doubles(script: Script) -> Iterator[Finding]:
         buffer = wide_buffer(script, call)
         if buffer is None or is_tried(script, call):
             continue
-        path, whole = callee_path(script, call), script.span(buffer)
-        end = Span(whole.end_line, whole.end_column - 1, whole.end_line, whole.end_column - 1)
+        path = callee_path(script, call)
         is_plain = len(buffer.args) == 1 and not buffer.keywords and "random" not in ast.unparse(buffer.func)
         numpy = ast.unparse(buffer.func).partition(".")[0]
-        edit = Edit(end, f", dtype={numpy}.float32")
+        fix = (
+            Fix("Make them floats of 32 bits", (_typed(script, buffer, f"{numpy}.float32"),))
+            if is_plain
+            else None
+        )
         yield Finding(
             RULE.id, "error", script.span(call.args[0]),
             f"`{path}` takes floats of 32 bits, and numpy makes these of 64: `dtype={numpy}.float32`, or "
             f"`.astype({numpy}.float32)`.",
-            path, (), Fix("Make them floats of 32 bits", (edit,), sure=False) if is_plain else None,
+            path, (), fix,
         )  # fmt: skip
 
 

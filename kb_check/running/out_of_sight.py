@@ -12,7 +12,7 @@ from kb_check.calls.resolved import callee_path
 from kb_check.running.computing import RUNNING, STORING, computing
 from kb_check.script import once_per_script
 from kb_check.syntax.bindings import once_bound
-from kb_check.syntax.bodies import bodies, start_of, statement_of
+from kb_check.syntax.bodies import innermost, statement_of
 
 if TYPE_CHECKING:
     from kb_check.script import Script
@@ -60,8 +60,7 @@ def is_untouched(script: Script, node: ast.expr, place: ast.expr) -> bool:
     made = once_bound(script, node)
     if not isinstance(made, ast.Call) or not callee_path(script, made).endswith(".new"):
         return False
-    found = [(body, at) for body in bodies(script) if (at := statement_of(body, made)) >= 0]
-    body, first = max(found, key=lambda row: start_of(row[0][row[1]]), default=([], 0))
+    body, first = innermost(script, made)
     last = statement_of(body, place)
     between = [part for statement in body[first : last + 1] for part in walk(statement)]
     return first <= last and not any(_is_foreign(script, part) for part in between)

@@ -6,6 +6,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.api_names import OPERATORS
 from kb_check.calls.resolved import callee_path, calls_only
 from kb_check.calls.sites import calls_by_node
 from kb_check.modes.keeping import is_harmless
@@ -13,7 +14,7 @@ from kb_check.running.read_pointers import read_pointer
 from kb_check.scene.active_object import reads_active
 from kb_check.script import once_per_script
 from kb_check.syntax.bindings import once_bound
-from kb_check.syntax.bodies import bodies, start_of, statement_of
+from kb_check.syntax.bodies import innermost
 from kb_check.syntax.words import asked_names, keywords_and_texts, stored_names
 
 if TYPE_CHECKING:
@@ -66,8 +67,7 @@ def _is_added(script: Script, modifier: ast.expr) -> bool:
             return False
     if not reads_active(script, once_bound(script, obj)):
         return False
-    found = [(body, at) for body in bodies(script) if (at := statement_of(body, modifier)) >= 0]
-    body, place = max(found, key=lambda row: start_of(row[0][row[1]]), default=([], 0))
+    body, place = innermost(script, modifier)
     for statement in reversed(body[:place]):
         value = statement.value if isinstance(statement, ast.Expr) else None
         if isinstance(value, ast.Call) and _adds(script, value):
@@ -93,7 +93,7 @@ def _may_change(script: Script, statement: ast.stmt) -> bool:
         if isinstance(node, ast.Call):
             path = callee_path(script, node)
             if (
-                path.startswith("bpy.ops.")
+                path.startswith(OPERATORS)
                 or ".modifiers." in ast.unparse(node)
                 or not (path or is_harmless(script, node))
             ):

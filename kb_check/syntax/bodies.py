@@ -41,6 +41,12 @@ def statement_of(body: Sequence[ast.stmt], node: ast.expr) -> int:
     return place if at < end else -1
 
 
+def innermost(script: Script, node: ast.expr) -> tuple[list[ast.stmt], int]:
+    """The innermost body with a statement that a node is in, and that statement's place; ([], 0) for none."""
+    found = [(body, at) for body in bodies(script) if (at := statement_of(body, node)) >= 0]
+    return max(found, key=lambda row: start_of(row[0][row[1]]), default=([], 0))
+
+
 def start_of(statement: ast.stmt) -> tuple[int, int]:
     """The line and column at which a statement begins."""
     return statement.lineno, statement.col_offset

@@ -31,6 +31,11 @@ def _of_edit_bone(name: str, value: str) -> tuple[str, str]:
     )
 
 
+# Property that takes no keys → the one that is animated in its place.
+ANIMATED_BY = {
+    f"{T}Object.dimensions": "scale",
+    **{f"{T}Camera.{name}": "lens" for name in ("angle", "angle_x", "angle_y")},
+}
 # Property → (what changes it, how).
 CHANGED_BY = {
     f"{T}AnimData.action": (

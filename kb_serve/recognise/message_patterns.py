@@ -52,10 +52,11 @@ BAD_KEYWORD = re.compile(
     r"|(?<![\w.])(?P<method>\w++(?:\.\w++)++)\(\): was called with invalid keyword argument\(s\) \((?P<several>[^)]*)\)"
 )
 IN_FUNCTION = re.compile(r"(?<![\w.])(?P<method>\w++(?:\.\w++)*+)\(\): error with (?:keyword )?argument")
-IN_ARGUMENT = re.compile(r"error with (?:keyword )?argument (?:\d+, )?\"(?P<name>\w+)\" -")
+_ARGUMENT = r"error with (?:keyword )?argument (?:\d+, )?\"(?P<name>\w+)\" -"
+IN_ARGUMENT = re.compile(_ARGUMENT)
 # Of 5.0 and newer with no word behind it.
 NO_SEQUENCE = re.compile(
-    r"(?<![\w.])(?P<function>\w++(?:\.\w++)++)\(\): error with (?:keyword )?argument (?:\d+, )?\"(?P<name>\w+)\" -"
+    rf"(?<![\w.])(?P<function>\w++(?:\.\w++)++)\(\): {_ARGUMENT}"
     r"(?:\s*sequence expected at dimension 1|\s*(?=$|[\w.]+\())"
 )
 TOO_MANY = re.compile(
@@ -96,6 +97,7 @@ MATRIX_PRODUCT = re.compile(
 NO_WRITING = re.compile(
     r"Writing to ID classes in this context is not allowed(?:.*?error setting (?P<owner>\w+)\.(?P<name>\w+))?"
 )
+OF_CLASSES = "validating class"  # what Blender says of classes that it is given to register
 POSITIONAL = re.compile(r"\bargs execution context is supported")
 NOT_AN_OPERATOR = re.compile(r"BMeshOpsModule: operator \"(?P<name>\w+)\" doesn't exist")
 NO_OPERATOR = re.compile(

@@ -14,6 +14,7 @@ from agents.loop.review.withdrawals import as_soft
 from agents.loop.running.run_tools import VERIFIER, VERIFY
 from agents.plan.tactical import Review
 from agents.protocol.findings import Finding
+from simworlds.counting import counted
 from simworlds.llm.errors import Declined, Misfit
 
 if TYPE_CHECKING:
@@ -147,13 +148,10 @@ def _held_open(verdict: VerifierVerdict) -> str:
     """What was found broken, apart from what could not be decided."""
     hard = [finding for finding in verdict.findings if finding.severity == "hard"]
     broken = sum(finding.outcome == "broken" for finding in hard)
-    found = f"has {broken} hard finding{'s' if broken != 1 else ''}" if broken else ""
-    undecided = (
-        f"could not decide {count} hard rule{'s' if count != 1 else ''}"
-        if (count := len(hard) - broken)
-        else ""
-    )
-    return f"The verifier {' and '.join(filter(None, (found, undecided)))}."
+    undecided = len(hard) - broken
+    told = [f"has {counted(broken, 'hard finding')}"] if broken else []
+    told += [f"could not decide {counted(undecided, 'hard rule')}"] if undecided else []
+    return f"The verifier {' and '.join(told)}."
 
 
 def still_open(how: str, verdict: VerifierVerdict, review: Review) -> str:

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 _OBJECT = "Object"
 _ANY = "AnyType"
-_OF_CLASSES = "validating class"
 _NOTHING_GIVEN = (
     "`{argument}` is None here: what is to be shown is not there, as an object without a material, or no active "
     "object. Test it before: `if mat: layout.prop(mat, …)`."
@@ -37,7 +36,7 @@ class GivenValues:
     def recognise(self, query: str, recognition: Recognition) -> None:
         """What to give in place of a value of another type."""
         for match in forms.first_matches(forms.GIVEN, query):
-            if _OF_CLASSES in query:  # whose attributes are told of elsewhere
+            if forms.OF_CLASSES in query:  # whose attributes are told of elsewhere
                 continue
             wanted, given = match["wanted"] or match["of"], match["given"] or match["none"]
             if given == "None" and wanted == _ANY and (argument := forms.IN_ARGUMENT.search(query)):

@@ -22,6 +22,9 @@ from kb_serve.recognise.removed.newer_nodes import tell_of_the_newer_node
 from kb_serve.recognise.resolving.subscripts import CustomProperties
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.messages.former_sockets import FormerSockets
     from kb_serve.recognise.recognition import Recognition
@@ -109,8 +112,8 @@ class Keys:
             recognition.add(path, 0.98 - 0.01 * rank, "error message")
         there = [match.id for match in recognition.matches if match.id.endswith(f'["{name}"]')]
         recognition.notes += filter(None, (of_older(path, self._reader) for path in there[:1]))
-        hidden = [one for one in sockets_by_setting(name, self._reader) if one.path in there]
-        recognition.notes += on_setting(hidden)
+        sockets = sockets_by_setting(name, self._reader)
+        recognition.notes += on_setting([one for one in sockets if one.path in there])
         if collection == _OF_COLLECTIONS:
             tell_of_the_newer_node(name, self._reader, recognition)
         # Sockets are mostly asked for to be linked.
@@ -128,7 +131,7 @@ class Keys:
         still_taken = self._sockets.explain(name, query, recognition)
         if not still_taken and not recognition.removed:
             recognition.add(f"{COLLECTION}.get", 0.9, "error message")
-            self._by_setting(name, recognition)
+            _add_hidden(sockets[:_FEW], recognition)
 
     def _as_node(self, name: str, query: str, recognition: Recognition) -> None:
         """Adds the nodes that are called so while they are new."""
@@ -136,13 +139,6 @@ class Keys:
         recognition.notes += on_called(nodes, self._reader)
         for rank, node in enumerate(nodes[:_FEW]):
             recognition.add(node.path, 0.96 - 0.01 * rank, "error message")
-
-    def _by_setting(self, name: str, recognition: Recognition) -> None:
-        """Adds the sockets called so that nodes have only with some setting."""
-        sockets = sockets_by_setting(name, self._reader)[:_FEW]
-        recognition.notes += on_setting(sockets)
-        for rank, socket in enumerate(sockets):
-            recognition.add(socket.path, 0.96 - 0.01 * rank, "error message")
 
     def _as_new(self, name: str, query: str, recognition: Recognition) -> bool:
         """Adds what a modifier or a constraint is called that nobody gave a name; whether a key may mean one."""
@@ -159,3 +155,10 @@ class Keys:
             recognition.add(f"{TYPES}Object.{holder}", 0.95, "error message")
             is_told = True
         return is_told
+
+
+def _add_hidden(sockets: Sequence[Symbol], recognition: Recognition) -> None:
+    """Adds sockets that nodes have only with some setting."""
+    recognition.notes += on_setting(sockets)
+    for rank, socket in enumerate(sockets):
+        recognition.add(socket.path, 0.96 - 0.01 * rank, "error message")

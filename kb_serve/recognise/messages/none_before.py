@@ -98,9 +98,8 @@ class NoneBefore:
             recognition.add(entry.path, _IS_READ if is_read else 0.86 - 0.01 * rank, "may be None")
             if not gone:
                 recognition.add(f"{TYPES}{entry.target}.{name}", 0.81 - 0.01 * rank, "attribute of None")
-            if (few or entry in told) and (calls := self._fillers(entry)):
-                before = ", then ".join(f"`{call}`" for call in calls)
-                recognition.notes.append(f"`{entry.path}` is None before {before}.")
+            if (few or entry in told) and (filled := self._filled(entry)):
+                recognition.notes.append(filled)
             elif entry in told and (setting := self._setting(entry)):
                 recognition.notes.append(f"`{entry.path}` is None on what is new: set it, `{setting}`.")
         if self._is_of_an_area(likely, owners):
@@ -138,9 +137,8 @@ class NoneBefore:
             return False
         recognition.add(held.path, _IS_READ, "may be None")
         recognition.notes.append(_IS_NONE.format(name=name, of=f", `{held.path}`,"))
-        if calls := self._fillers(held):
-            before = ", then ".join(f"`{call}`" for call in calls)
-            recognition.notes.append(f"`{held.path}` is None before {before}.")
+        if filled := self._filled(held):
+            recognition.notes.append(filled)
         elif setting := self._setting(held):
             recognition.notes.append(f"Set it, `{setting}`, or test it before it is read.")
         else:
@@ -326,9 +324,11 @@ class NoneBefore:
         found = list(filter(None, map(self._removed.of_path, paths)))
         return sorted(found, key=lambda removed: not removed.successors) if len(found) <= _FEW else []
 
-    def _fillers(self, entry: SymbolEntry) -> list[str]:
+    def _filled(self, entry: SymbolEntry) -> str:
+        """A sentence on the calls before which a pointer is None; empty where none is known."""
         symbol = self._reader.symbol(entry.path)
-        return fillers(symbol) if symbol else []
+        calls = ", then ".join(f"`{call}`" for call in fillers(symbol)) if symbol else ""
+        return f"`{entry.path}` is None before {calls}." if calls else ""
 
     def _is_flagged(self, entry: SymbolEntry, flag: str) -> bool:
         """Whether one of a symbol's flags begins so."""

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.api_names import ID, TYPES
+from kb_build.symbols.api_names import ID
 from kb_build.symbols.records import ANIMATABLE
 from kb_serve.recognise import message_patterns as forms
+from kb_serve.recognise.changed_by import ANIMATED_BY
 from kb_serve.recognise.names.likely.corrections import nearest
 
 if TYPE_CHECKING:
@@ -14,13 +15,6 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import Recognition
 
 _MOST_KINDS = 8  # of data-blocks, those that scripts use most
-
-
-# Property that takes no keys → what to key instead.
-_INSTEAD = {
-    f"{TYPES}Object.dimensions": " Animate `scale`.",
-    f"{TYPES}Camera.angle": " Animate `lens`.",
-}
 
 
 class PathsNotFound:
@@ -46,9 +40,9 @@ class PathsNotFound:
             still = [one for one in self._reader.heaviest(named) if not self._is_animated(one.path)]
             for property_ in still[:1]:
                 recognition.add(property_.path, 0.97, "error message")
-                recognition.notes.append(
-                    f"`{property_.path}` cannot be animated.{_INSTEAD.get(property_.path, '')}"
-                )
+                other = ANIMATED_BY.get(property_.path)
+                instead = f" Animate `{other}`." if other else ""
+                recognition.notes.append(f"`{property_.path}` cannot be animated.{instead}")
 
     def _like(self, cls: str, name: str) -> list[str]:
         names = self._reader.member_names(cls)

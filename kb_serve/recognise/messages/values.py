@@ -34,7 +34,6 @@ _MOST_ITEMS = 8  # that are listed
 _NEVER = "RNA lists `{name}` for `{owner}`, and no {thing} comes to have it.{instead}"
 _OF_OPERATORS = "to operator properties"
 _OF_PROPERTIES = "item.attr = val"
-_OF_CLASSES = "validating class"  # what Blender says of classes that it is given to register
 
 
 def _closest(name: str, items: Sequence[str]) -> str:
@@ -75,7 +74,7 @@ class Values:
         owners = self._enum_values.taking(items, self._called(query))
         if _OF_PROPERTIES in query:  # nothing was called
             owners = [owner for owner in owners if "(" not in owner] or owners
-        if _OF_CLASSES in query:
+        if forms.OF_CLASSES in query:
             owners = self._of_classes(owners) or owners
         owners = self._meant_first(owners, value, items, query)[:_MOST_OWNERS]
         for rank, owner in enumerate(owners[:2]):
@@ -139,19 +138,11 @@ class Values:
             yield self._of_another_version(owner, name, items)
             yield self._enum_values.condition(owner, name)
             if self._enum_values.has(owner, name):
-                version = self._reader.meta.get("minor", "")
-                is_fixed = "(" in owner and not owner.startswith(OPERATORS)
-                yield self._never_had(owner, name, items) or (
-                    _OTHER_VERSION.format(name=name, owner=owner, version=version)
-                    if is_fixed
-                    else _NOT_NOW.format(name=name, owner=owner)
-                )
-            spelled = [
-                item
-                for path, item, _ in self._reader.enum_owners(key(name))
-                if path == owner and item != name
-            ]
-            yield _NO_ITEM.format(name=name, similar=f"`{spelled[0]}`") if spelled else ""
+                yield self._never_had(owner, name, items) or self._not_taken(owner, name)
+            spelled = (item for path, item, _ in self._reader.enum_owners(key(name)) if path == owner)
+            yield next(
+                (_NO_ITEM.format(name=name, similar=f"`{item}`") for item in spelled if item != name), ""
+            )
             labelled = ", ".join(f"`{item}`" for item in self._labelled(owner, name, items)[:_FEW])
             yield labelled and _LABELLED.format(name=name, items=labelled)
         beside = ", ".join(f"`{other}`" for other in self._taking_beside(owners, name))
@@ -162,6 +153,12 @@ class Values:
         yield others and _TAKEN_BY.format(name=name, owners=others)
         if owners and len(items) <= _MOST_ITEMS:
             yield _ONE_OF.format(name=name or "''", items=", ".join(f"`{item}`" for item in items))
+
+    def _not_taken(self, owner: str, name: str) -> str:
+        """Why a value that is there was refused: functions of RNA take the same at any time."""
+        if "(" in owner and not owner.startswith(OPERATORS):
+            return _OTHER_VERSION.format(name=name, owner=owner, version=self._reader.meta.get("minor", ""))
+        return _NOT_NOW.format(name=name, owner=owner)
 
     def _never_had(self, owner: str, name: str, items: Sequence[str]) -> str:
         """That nothing comes to have a value, as a property with the same items tells that Blender alone sets; empty

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import STRUCT
 from kb_build.symbols.paths import last_name
+from kb_serve.recognise.names.elsewhere.members_within import Within
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
@@ -15,15 +16,10 @@ _FEW = 2
 _KIND = "type"  # the property that tells of which kind a thing is
 
 
-class OfAnotherKind(NamedTuple):
-    """A member that another kind of the same thing has, and a sentence that tells how the kinds are told apart."""
-
-    member: SymbolEntry
-    note: str
-
-
-def of_another_kind(owner: str, name: str, reader: BaseReader) -> OfAnotherKind | None:
-    """The member of that name which other kinds of a thing have, where few have it and ``type`` tells them apart."""
+def of_another_kind(owner: str, name: str, reader: BaseReader) -> Within | None:
+    """The member of that name which other kinds of a thing have, where few have it and ``type`` tells them apart, with
+    the test that does.
+    """
     cls = reader.entry(owner)
     kinds = reader.symbol(f"{cls.base}.{_KIND}") if cls and cls.base not in {"", STRUCT} else None
     if cls is None or kinds is None or not kinds.enum_items:
@@ -44,7 +40,7 @@ def of_another_kind(owner: str, name: str, reader: BaseReader) -> OfAnotherKind 
     own = _choice(owner, cls.base, choices, reader)
     this = f" This one's is {own!r}." if own else ""
     has = "have" if len(having) > 1 else "has"
-    return OfAnotherKind(member, f"{classes} {has} `{name}`: test {tests} before.{this}")
+    return Within(member, f"{classes} {has} `{name}`: test {tests} before.{this}")
 
 
 def _choice(cls: str, base: str, choices: dict[str, str], reader: BaseReader) -> str:
