@@ -340,6 +340,7 @@ def _symbol_tables(
     from kb_build.panels.conditions import panel_conditions  # noqa: PLC0415 - not when nothing changed
     from kb_build.panels.gating import settled  # noqa: PLC0415 - loaded ahead
     from kb_build.panels.idle import idle_conditions  # noqa: PLC0415 - likewise
+    from kb_build.panels.panel_labels import labels_of  # noqa: PLC0415 - loaded ahead
     from kb_build.symbols.tables import symbol_tables  # noqa: PLC0415 - likewise
     from kb_build.usage.examples import SymbolUsage  # noqa: PLC0415 - loaded ahead
     from kb_build.usage.usage_index import merged, page_usage, with_aliases  # noqa: PLC0415 - loaded ahead
@@ -358,6 +359,7 @@ def _symbol_tables(
             {f"bpy.types.{name}": expression for name, expression in reached.items()},
             extract.names,
             [*panel_conditions(settled(found.gatings, listed), listed), *idle_conditions(extract.idle)],
+            labels_of(found.panels),
         )
 
     return symbol_tables(symbols, pages, used)

@@ -18,6 +18,7 @@ from kb_build.index.documents import Document, kind_of, make_units, topic_docume
 from kb_build.index.everyday_words import lend, load_everyday_words, unknown_of
 from kb_build.index.label_names import find_label_names
 from kb_build.index.operator_labels import find_labelled_operators, passages_of
+from kb_build.index.panel_passages import find_panel_passages
 from kb_build.index.passage_texts import passage_rows
 from kb_build.index.passages import find_passages
 from kb_build.index.postings import (
@@ -274,10 +275,6 @@ def _write(part: Path, contents: Contents) -> None:
             write_index(connection, units, expansions)
             _write_removed_symbols(connection, removed_symbols())
             _insert(connection, "still_works", contents.still_works, 2)
-            names = find_label_names(symbols, pages, passages, labelled)
-            labels = (*names, *find_value_names(symbols, pages, passages))
-            _insert(connection, "label_names", labels, 4)
-            _insert(connection, "passages", passage_rows(passages, pages, labels), 6)
             _insert(connection, "refusals", _refusals(contents.symbols), 2)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             links = enumerate(contents.links)
@@ -287,6 +284,12 @@ def _write(part: Path, contents: Contents) -> None:
             tables = contents.tables() if contents.tables else symbol_tables(contents.symbols, contents.pages)
             _write_symbols(connection, tables)
             _write_usage(connection, tables.uses)
+            # The search does without these: it is written while the scripts are read that tell of panels.
+            places = passages | find_panel_passages(symbols, pages, contents.links, tables.panels, passages)
+            names = find_label_names(symbols, pages, places, labelled)
+            labels = (*names, *find_value_names(symbols, pages, places))
+            _insert(connection, "label_names", labels, 4)
+            _insert(connection, "passages", passage_rows(places, pages, labels), 6)
             # How often people ask who do not know the name; some areas have more plain questions than others.
             asked = placed_expansions(load_query_expansions(plain=False), known, removed_symbols)
             weights = symbol_weights(contents.symbols, passages, asked, tables.uses)

@@ -34,7 +34,7 @@ _PLAIN_HEADINGS = frozenset(
 KIND_WORDS = frozenset(terms_of("f-modifier constraint node settings rule texture strip type types"))
 _ADDRESS = re.compile(r"[^a-z0-9]+")
 _PARTS = re.compile(r"\s*(?:/|,| and )\s*")
-_REFERS = re.compile(r"(?:See .{,40})?")  # to what is not there
+_REFERS = re.compile(r"(?:See .{,40}|> \*\*Todo:\*\*[\s\S]*)?")  # to what is not there, or not yet
 _BRACKETS = re.compile(r"\s*[(\[][^)\]]*[)\]]|,?\s*`[^`]*`")  # and keys to press
 
 
@@ -84,6 +84,11 @@ def keys_of_term(term: str) -> frozenset[str]:
     return frozenset(filter(None, (key(plain), key(term), *map(key, parts), *map(key, _in_full(parts)))))
 
 
+def key_of_term(term: str) -> str:
+    """The key of all of a term, without the keys to press."""
+    return key(_BRACKETS.sub("", term))
+
+
 def _in_full(parts: Sequence[str]) -> Iterator[str]:
     """The names that a list is short for, in the orders that labels have: "Levels Viewport, Render" for Levels and
     Render Levels, "Mute/Unmute Strips" for Mute Strips.
@@ -112,7 +117,7 @@ def _read(page: Page) -> _Place:
             place.taken.add((number, line))
         for line, term in term_lines(section.text):
             keys = keys_of_term(term)
-            entry = _Term(number, line, key(_BRACKETS.sub("", term)))
+            entry = _Term(number, line, key_of_term(term))
             for each in keys:
                 place.terms[each].append(entry)
     return place

@@ -28,7 +28,7 @@ _STATES = ("active", "enabled")
 _DEEPEST_CALL = 3
 _LONGEST_TEXT = 300
 # Methods that show the property that their second argument names.
-_SHOWS = frozenset(
+SHOWS = frozenset(
     {
         "prop", "prop_search", "prop_enum", "prop_menu_enum", "props_enum", "prop_tabs_enum", "prop_with_popover",
         "template_ID",
@@ -91,7 +91,7 @@ class _Shown:
 
 def shows_something(code: str) -> bool:
     """Whether a script's text calls what shows a property, or an operator: most do not, and need not be read."""
-    return any(f".{name}(" in code for name in _SHOWS | _OFFERS)
+    return any(f".{name}(" in code for name in SHOWS | _OFFERS)
 
 
 def places_in(analysis: Analysis, symbols: Symbols) -> list[Place]:
@@ -130,7 +130,7 @@ def _showing(tree: ast.Module) -> list[tuple[ast.FunctionDef, ast.ClassDef | Non
             if (
                 function is not None
                 and isinstance(node.func, ast.Attribute)
-                and node.func.attr in _SHOWS | _OFFERS
+                and node.func.attr in SHOWS | _OFFERS
             ):
                 found.setdefault(function, cls)
         elif isinstance(node, ast.FunctionDef):
@@ -321,7 +321,7 @@ class Drawing(Conditions):
         parts = [*walk(node)]
         for part in parts:
             if isinstance(part, ast.Call) and isinstance(part.func, ast.Attribute):
-                if part.func.attr in _SHOWS:
+                if part.func.attr in SHOWS:
                     self._show(part, part.func.value)
                 elif part.func.attr in _OFFERS:
                     self._offer(part, part.func.value)

@@ -21,6 +21,7 @@ from kb_build.usage.examples import SymbolUsage
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 
+    from kb_build.panels.panel_labels import PanelLabel
     from kb_build.symbols.records import Page, SettingCondition, Symbol
     from kb_build.usage.examples import Uses
 
@@ -32,7 +33,7 @@ _TWO_ACTIONS = re.compile(r"(?P<first>\w+ing) (?:&|and) (?P<second>\w+ing)(?: (?
 @dataclass(frozen=True, slots=True)
 class SymbolTables:
     """Rows of the tables symbols, names, enum_items, operator_arguments, creation and setting_conditions, as schema.DDL
-    has them, and where scripts use symbols.
+    has them, where scripts use symbols, and where panels show properties.
     """
 
     symbols: Sequence[Row]
@@ -42,6 +43,7 @@ class SymbolTables:
     creation: Sequence[Row]
     conditions: Sequence[SettingCondition] = ()
     uses: Mapping[str, Uses] = field(default_factory=dict[str, "Uses"])
+    panels: Mapping[str, Sequence[PanelLabel]] = field(default_factory=dict[str, "Sequence[PanelLabel]"])
 
 
 def symbol_tables(
@@ -84,6 +86,7 @@ def symbol_tables(
         creation=[(path, *creation) for path, creation in calls.items()],
         conditions=usage.conditions,
         uses=usage.uses,
+        panels=usage.panels,
     )  # fmt: skip
 
 

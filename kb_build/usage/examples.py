@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
     from kb_build.flow.analysis import Analysis
     from kb_build.flow.blender.api import Api
+    from kb_build.panels.panel_labels import PanelLabel
     from kb_build.symbols.records import SettingCondition
 
 MOST_EXAMPLES = 3  # of one symbol
@@ -104,13 +105,14 @@ class SymbolUsage:
     """What the uses of symbols tell: symbol → its uses, and class → the expression that leads to an instance.
 
     ``names``: class, without its module → the name that Blender itself gives to a new one. ``conditions`` are what
-    panels ask before they let a property be set.
+    panels ask before they let a property be set, ``panels`` where they show which.
     """
 
     uses: Mapping[str, Uses] = field(default_factory=dict[str, Uses])
     reached: Mapping[str, str] = field(default_factory=dict[str, str])
     names: Mapping[str, str] = field(default_factory=dict[str, str])
     conditions: Sequence[SettingCondition] = ()
+    panels: Mapping[str, Sequence[PanelLabel]] = field(default_factory=dict[str, "Sequence[PanelLabel]"])
 
 
 def clearest(examples: Iterable[Example]) -> list[Example]:

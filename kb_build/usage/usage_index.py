@@ -19,8 +19,9 @@ from kb_build.fingerprint import usage_digest
 from kb_build.flow.analysis import analyse
 from kb_build.flow.blender.api import Api
 from kb_build.flow.blender.symbols import SymbolList
-from kb_build.panels import gating
+from kb_build.panels import gating, panel_labels
 from kb_build.panels.drawing import places_in, shows_something
+from kb_build.panels.panel_labels import PanelClass, ScriptPanels, ShownProperty, panels_in
 from kb_build.usage.examples import Example, Uses, analysed_uses, uses_in
 from kb_build.usage.scripts import TEMPLATES, read_script
 from simworlds.files import remove_unfinished_files, staged_file
@@ -43,10 +44,13 @@ Usage = dict[str, Uses]
 
 @dataclass(frozen=True, slots=True)
 class ScriptUsage:
-    """What scripts tell: the uses of symbols, and by property what the panels in them ask (see panels.gating)."""
+    """What scripts tell: the uses of symbols, by property what the panels in them ask (see panels.gating), and what
+    these show.
+    """
 
     uses: Usage = field(default_factory=dict[str, Uses])
     gatings: dict[str, gating.Gating] = field(default_factory=dict[str, gating.Gating])
+    panels: ScriptPanels = field(default_factory=ScriptPanels)
 
 
 def usage_file(cache: Path, extract: str, scripts: Sequence[Script]) -> Path:
@@ -84,7 +88,9 @@ def script_usage(
         def result() -> ScriptUsage:
             parts = [share() for share in waiting]
             usage = ScriptUsage(
-                merged(part.uses for part in parts), gating.merged(part.gatings for part in parts)
+                merged(part.uses for part in parts),
+                gating.merged(part.gatings for part in parts),
+                panel_labels.merged(part.panels for part in parts),
             )
             _keep(usage, file)
             return usage
@@ -97,13 +103,15 @@ def _read(symbols: Sequence[Symbol], scripts: Iterable[Script], version: str) ->
     numbers = version_key(version)
     uses: list[Usage] = []
     gatings: list[dict[str, gating.Gating]] = []
+    panels: list[ScriptPanels] = []
     for script in scripts:
         code = read_script(script.path)
         analysis = analyse(code, api, numbers)
         uses.append(analysed_uses(analysis, code, script.name, api, script.cost))
         if shows_something(code) and not script.name.startswith(TEMPLATES):
             gatings.append(gating.gatings_in(places_in(analysis, api.symbols), api.symbols))
-    return ScriptUsage(merged(uses), gating.merged(gatings))
+            panels.append(panels_in(analysis))
+    return ScriptUsage(merged(uses), gating.merged(gatings), panel_labels.merged(panels))
 
 
 def page_usage(symbols: Sequence[Symbol], pages: Iterable[Page], version: str) -> Usage:
@@ -149,7 +157,10 @@ def _kept(path: Path) -> ScriptUsage | None:
             name: Uses(count, files, [Example(*example) for example in examples])
             for name, (count, files, examples) in kept["uses"].items()
         }
-        return ScriptUsage(uses, {name: gating.from_rows(rows) for name, rows in kept["gatings"].items()})
+        gatings = {name: gating.from_rows(rows) for name, rows in kept["gatings"].items()}
+        classes, shown = kept["panels"]
+        panels = ScriptPanels([PanelClass(*row) for row in classes], [ShownProperty(*row) for row in shown])
+        return ScriptUsage(uses, gatings, panels)
     except (OSError, EOFError, zlib.error, ValueError, TypeError, KeyError):
         return None
 
@@ -159,7 +170,8 @@ def _keep(usage: ScriptUsage, path: Path) -> None:
         name: (uses.count, uses.files, [(e.cost, e.file, e.line, e.code) for e in uses.examples])
         for name, uses in usage.uses.items()
     }
-    rows = {"uses": uses, "gatings": {name: gating.to_rows(found) for name, found in usage.gatings.items()}}
+    gatings = {name: gating.to_rows(found) for name, found in usage.gatings.items()}
+    rows = {"uses": uses, "gatings": gatings, "panels": usage.panels}
     with contextlib.suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
         remove_unfinished_files(path.parent)

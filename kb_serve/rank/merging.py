@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import STOP_WORDS, stems_of, words
+from kb_serve.rank.asked_sockets import AskedSockets
 from kb_serve.rank.asked_words import SCRIPT_WORDS
 from kb_serve.rank.deprecated import replacement
 from kb_serve.rank.meant_names import MeantNames
@@ -115,6 +116,7 @@ class QueryRanker:
         self._recogniser = Recogniser(reader)
         self._notes = Notes(reader)
         self._meant = MeantNames(reader, lambda: self.searcher)
+        self._sockets = AskedSockets(reader)
 
     @cached_property
     def searcher(self) -> Searcher:
@@ -139,6 +141,7 @@ class QueryRanker:
             return Ranking(ranked, recognition, named=False, notes=self._notes.on(recognition))
         self._meant.add(recognition)
         prose = prose_of(query)
+        self._sockets.add(prose, recognition)
         asked, code = _without_code(prose, recognition)
         hits = self.searcher.search(
             _without_roots(asked),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import NODE, TYPES
@@ -22,22 +22,39 @@ _LONGEST = 4  # words of a label
 _MOST_WORDS = 20  # with more of them it is no question about nodes alone
 
 
+class NamedNode(NamedTuple):
+    """The path of a node, and the places of the words of a question that are its label."""
+
+    path: str
+    start: int
+    end: int
+
+
 def named_nodes(question: str, reader: BaseReader) -> list[str]:
     """Paths of the nodes whose labels a question that speaks of nodes says, in its order: of each label the node that
     counts most, of old textures only where there is no other.
     """
-    said = [word.strip(_MARKS) for word in question.lower().split()]
+    said = words_said(question)
     if len(said) > _MOST_WORDS or NODE_WORDS.isdisjoint(said):
         return []
+    return list(dict.fromkeys(node.path for node in nodes_by_label(said, reader)))
+
+
+def words_said(question: str) -> list[str]:
+    """The words of a question, in small letters and without marks around them."""
+    return [word.strip(_MARKS) for word in question.lower().split()]
+
+
+def nodes_by_label(said: Sequence[str], reader: BaseReader) -> list[NamedNode]:
+    """The nodes whose labels stand among words, in their order."""
     spans = [*_spans(said)]
     reader.by_key.load("".join(said[start:end]) for start, end in spans)
-    nodes: dict[str, None] = {}
-    end_of_last = 0
+    nodes: list[NamedNode] = []
     for start, end in spans:
-        if start >= end_of_last and (node := _called("".join(said[start:end]), reader)):
-            nodes[node] = None
-            end_of_last = end
-    return list(nodes)
+        is_free = not nodes or start >= nodes[-1].end
+        if is_free and (node := _called("".join(said[start:end]), reader)):
+            nodes.append(NamedNode(node, start, end))
+    return nodes
 
 
 def _spans(said: Sequence[str]) -> Iterator[tuple[int, int]]:

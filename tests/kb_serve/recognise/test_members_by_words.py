@@ -56,3 +56,23 @@ def test_short_ways_to_write_a_module_are_read(kb: KnowledgeBase, query: str, fi
 
 def test_what_words_mean_is_not_remembered_for_ever() -> None:
     assert members_by_words._means.cache_info().maxsize is not None
+
+
+@pytest.mark.parametrize(
+    ("query", "named"),
+    [
+        ("ShaderNodeBsdfPrincipled inputs Coat", ["Coat Weight", "Coat Roughness", "Coat IOR"]),
+        ("ShaderNodeTexNoise inputs Scale Detail", ["Scale", "Detail"]),
+        ("GeometryNodeCurveToMesh input Profile", ["Profile Curve"]),
+    ],
+)
+def test_words_beside_a_node_name_its_sockets(kb: KnowledgeBase, query: str, named: list[str]) -> None:
+    ids = [hit.id for hit in kb.query(query).hits]
+    node = f"bpy.types.{query.split()[0]}"
+    assert ids[0].startswith(node)
+    assert [one for one in ids if "[" in one][: len(named)] == [f'{node}.inputs["{name}"]' for name in named]
+
+
+def test_a_word_beside_a_node_is_no_member_of_all_sockets(kb: KnowledgeBase) -> None:
+    ids = [hit.id for hit in kb.query("ShaderNodeBsdfPrincipled inputs Coat").hits]
+    assert "bpy.types.NodeSocket.is_multi_input" not in ids

@@ -15,22 +15,29 @@ if TYPE_CHECKING:
 
 _MOST_WORDS = 5  # with more of them it is a question, in which the class is one word of many
 _MOST_FOUND = 3  # more members than these are not told apart
+_MOST_SOCKETS = 8  # … and sockets, of which a panel's worth begins alike: ``Coat Weight``, ``Coat Roughness``
 _SHORTEST = 4  # letters of a word that may be a beginning, or misspelt
 _MOST_COMPARED = 4_000  # pairs of words whose likeness is remembered
-_SOCKETS = frozenset({"socket", "sockets"})
+# How a question says that it is about sockets → the side that it means; empty for both.
+SIDES = {
+    "input": "inputs", "inputs": "inputs", "output": "outputs", "outputs": "outputs", "socket": "", "sockets": "",
+}  # fmt: skip
 _SLIP = 0.79  # similarity of a word with two letters exchanged
 
 
 def members_by_words(cls: str, beside: Collection[str], reader: BaseReader) -> list[str]:
-    """Paths of the members of a class, or of what a member leads to, that all of some words describe; best first.
+    """Paths of the members of a class, or of what a member leads to, that all of some words describe; best first. Of a
+    node also the sockets that they name one by one.
 
     Empty where too many do.
     """
     asked = [word for text in beside for word in words(text) if word not in STOP_WORDS]
-    if _SOCKETS.issuperset(asked) and reader.descends(cls, NODE):
-        return []  # all of them, which the class lists
     if not 0 < len(asked) <= _MOST_WORDS:
         return []
+    if reader.descends(cls, NODE) and (sides := [word for word in asked if word in SIDES]):
+        return sockets_by_words(
+            cls, {SIDES[word] for word in sides}, [w for w in asked if w not in SIDES], reader
+        )
     own = list(_members(cls, reader))
     found = [(_unsaid(entry, asked), entry.path) for entry in own if not _missing(entry, asked)]
     if not found:
@@ -39,8 +46,24 @@ def members_by_words(cls: str, beside: Collection[str], reader: BaseReader) -> l
             if 0 < len(rest) < len(asked):
                 further = _members(TYPES + pointer.target, reader)
                 found += [(_unsaid(one, rest), one.path) for one in further if not _missing(one, rest)]
-    paths = list(dict.fromkeys(path for _, path in sorted(found)))
-    return paths if len(paths) <= _MOST_FOUND else []
+    paths = list(dict.fromkeys(path for _, path in sorted(found, key=lambda row: row[0])))
+    most = _MOST_SOCKETS if all("[" in path for path in paths) else _MOST_FOUND
+    return paths if len(paths) <= most else []
+
+
+def sockets_by_words(
+    node: str, sides: Collection[str], asked: Collection[str], reader: BaseReader
+) -> list[str]:
+    """Paths of a node's sockets of some sides that words describe, all of them or else each of them one; without words
+    none, as the node lists them all.
+    """
+    begins = tuple(f"{side}[" for side in sides if side) or ("inputs[", "outputs[")
+    own = [one for name, one in reader.members(node).items() if name.startswith(begins)]
+    found = [one.path for one in own if asked and not _missing(one, asked)]
+    if not found:
+        named = [[one.path for one in own if not _missing(one, [word])] for word in asked]
+        found = [path for paths in named for path in paths] if all(named) else []
+    return list(dict.fromkeys(found))[:_MOST_SOCKETS]
 
 
 def _members(cls: str, reader: BaseReader) -> Iterator[SymbolEntry]:
