@@ -31,6 +31,7 @@ from kb_serve.recognise.message_patterns import (
     without_wording,
 )
 from kb_serve.recognise.messages.messages import Messages
+from kb_serve.recognise.names.by_words.menus_by_words import menu_extended
 from kb_serve.recognise.names.by_words.operator_words import OperatorWords
 from kb_serve.recognise.names.by_words.said_otherwise import said_otherwise
 from kb_serve.recognise.names.elsewhere.holders import by_what_holds_it
@@ -175,6 +176,9 @@ class Recogniser:
             described = "" if is_message(query) else asked_of_inputs(query)
             if described and self._reader.entry(described):
                 recognition.add(described, _DESCRIBED, "described")
+            if extended := None if is_message(query) else menu_extended(query, self._reader):
+                recognition.add(extended.path, _DESCRIBED, "described")
+                recognition.notes.append(extended.note)
         self._check_uses(query, chains, recognition)
         if not is_settled:
             self._values_of_nothing(query, recognition)

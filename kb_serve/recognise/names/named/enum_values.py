@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
 from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.flags import operator_areas
 from kb_build.symbols.lines import taken_text
 from kb_build.symbols.paths import argument_of, plain_path
 from kb_build.symbols.records import EnumItem
@@ -38,6 +39,8 @@ _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
 _MOST_VALUES = 40
 _MOST_TOLD = 5  # enumerations
 _ICON = "icon"
+_OF_INTERFACE = 0.4  # what an owner fits that is of Blender's windows, of what one fits that a script sets
+_PREFERENCES = f"{TYPES}Preferences"
 _MOST_COMPARED = 20  # enumerations of which as many items are listed
 _FITTING = 0.5  # how well the words around a bare value must fit its property
 _FITTING_WORD = 1.0  # the same for one that people write in capitals, too: EEVEE, PNG
@@ -115,7 +118,9 @@ class EnumValues:
         first; with no words all, as nothing else tells which is meant.
         """
         fit = (
-            {owner: self._owner_fit(owner, around) for owner, _ in owners[:_MOST_COMPARED]} if around else {}
+            {owner: self._fit_for_scripts(owner, around) for owner, _ in owners[:_MOST_COMPARED]}
+            if around
+            else {}
         )
         compared = [row for row in owners if not around or row[0] in fit]
         weights = self._reader.weights([plain_path(owner) for owner, _ in compared])
@@ -232,6 +237,16 @@ class EnumValues:
     def _is_class(self, value: str) -> bool:
         """Whether a label, ``Matrix``, is the name of a class: then it is hardly meant as an item."""
         return any(entry.kind == "class" for entry in self._reader.by_name(value))
+
+    def _fit_for_scripts(self, owner: str, around: set[str]) -> float:
+        """How well an owner fits the words around; less, if it is an operator that an editor must be open for, or of
+        the preferences: of Blender, not of what is made with it.
+        """
+        fit = self._owner_fit(owner, around)
+        if not argument_of(owner):
+            return fit * (_OF_INTERFACE if owner.startswith(_PREFERENCES) else 1.0)
+        symbol = self._reader.symbol(plain_path(owner))
+        return fit * (_OF_INTERFACE if symbol and operator_areas(symbol) else 1.0)
 
     def _owner_fit(self, owner: str, around: set[str]) -> float:
         entry, parameter = self._reader.entry(plain_path(owner)), argument_of(owner)
