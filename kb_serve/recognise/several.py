@@ -46,6 +46,8 @@ _OPPOSITES = (
 _PRONOUNS = frozenset("him it that them these this those".split())  # noqa: SIM905
 _BEFORE_VERBS = frozenset({"for", "of", "with", "without"})  # what stands before verbs that name buttons
 _MOST = 5
+_LONGEST_NAME = 4  # words of a thing
+_PEOPLE = frozenset({"i", "my", "we", "you"})
 
 
 def _unframed(text: str) -> str:
@@ -94,13 +96,26 @@ def parts_of(query: str) -> tuple[QuestionPart, ...]:
             and not _shares_object(text[:start])
         ),
     ]
-    if not 1 < len(starts) <= _MOST or not _is_request(text, sure=False):
-        return ()
     stops = [*(start for start, end in ends if end in starts), len(text)]
-    clauses = [text[start:stop] for start, stop in zip(starts, stops, strict=True)]
-    _, _, about = _unframed(clauses[0]).partition(" ")
-    first, *others = clauses
+    first, *others = [text[start:stop] for start, stop in zip(starts, stops, strict=True)]
+    is_request = _is_request(text, sure=False)
+    if not 1 < len(starts) <= _MOST or not (
+        is_request or (_is_thing(first) and all(map(_is_of_thing, others)))
+    ):
+        return ()
+    _, _, about = _unframed(first).partition(" ") if is_request else ("", "", first)
     return (QuestionPart(first), *(QuestionPart(clause, about) for clause in others))
+
+
+def _is_thing(clause: str) -> bool:
+    """Whether a clause only names a thing, ``voxel remesh modifier``."""
+    said = clause.lower().split()
+    return len(said) <= _LONGEST_NAME and (_VERBS | _ALSO_NAMES | _PEOPLE).isdisjoint(said)
+
+
+def _is_of_thing(clause: str) -> bool:
+    """Whether a clause says what is to be done with what is named before: ``and apply it`` of a modifier."""
+    return not _PRONOUNS.isdisjoint(_unframed(clause).lower().split()[1:2])
 
 
 def _is_sure(between: str) -> bool:

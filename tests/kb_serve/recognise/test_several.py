@@ -36,6 +36,10 @@ from kb_serve.recognise.several import parts_of
         ("how to make a body start animated and then become dynamic", ()),
         ("obj.select_set(True); delete the object", ()),
         ("RuntimeError: Operator failed, add an object and select it", ()),
+        ("new material and assign it to the slot", ("new material", "assign it to the slot")),
+        ("voxel remesh modifier and apply it", ("voxel remesh modifier", "apply it")),
+        ("I made the arm bones, copy them to the right", ()),
+        ("pip install bpy and use it outside the application", ()),
         ("add bones and", ()),
         ("", ()),
         (", and then ;", ()),
@@ -44,6 +48,10 @@ from kb_serve.recognise.several import parts_of
 )
 def test_actions_are_taken_apart_and_their_objects_are_not(query: str, parts: tuple[str, ...]) -> None:
     assert tuple(part.text for part in parts_of(query)) == parts
+
+
+def test_later_parts_are_about_the_thing_that_the_first_names() -> None:
+    assert [part.about for part in parts_of("bevel modifier and apply it")] == ["", "bevel modifier"]
 
 
 def test_later_parts_are_about_the_object_of_the_first() -> None:
