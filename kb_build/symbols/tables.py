@@ -155,10 +155,10 @@ def action_names(pages: Iterable[Page], titles: Container[str]) -> Iterator[tupl
 
 
 def enum_rows(symbol: Symbol) -> Iterator[tuple[str, str, str, str]]:
-    """(key, owner, identifier, name) of a symbol's own enum items and of its parameters'."""
+    """(key, owner, identifier, name) of a symbol's own enum items, of what it returns, and of its parameters'."""
     if symbol.kind == "enum":
         return
-    for item in symbol.enum_items:
+    for item in (*symbol.enum_items, *(item for returned in symbol.returns for item in returned.enum_items)):
         yield key(item.identifier), symbol.path, item.identifier, item.name
     for parameter in symbol.parameters:
         for item in parameter.enum_items:

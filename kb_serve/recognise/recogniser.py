@@ -189,7 +189,11 @@ class Recogniser:
             tell_of_the_newer_node(name, self._reader, recognition)
         tell_of_the_newer_mix(old, self._reader, recognition)
         self._explain_removed(recognition, is_refused_value=BAD_ENUM.search(query) is not None)
-        recognition.missing = [missing for missing in recognition.missing if not own.have(missing)]
+        recognition.missing = [
+            missing
+            for missing in recognition.missing
+            if not own.have(missing) and not (self._enum_values.has_any(missing.name) and not missing.owner)
+        ]
         self._explain_missing(recognition)
         recognition.matches.sort(key=lambda match: (-match.sure, match.why != "successor"))
         return recognition

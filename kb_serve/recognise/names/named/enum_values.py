@@ -177,6 +177,10 @@ class EnumValues:
         """Whether even the likeliest owner of the items in a message takes as many others as are listed."""
         return bool(owners) and self._difference(owners[0], set(items)) >= len(items)
 
+    def has_any(self, value: str) -> bool:
+        """Whether any enumeration has an item that is spelled just so."""
+        return any(identifier == value for _, identifier, _ in self._reader.enum_owners(key(value)))
+
     def has(self, owner: str, value: str) -> bool:
         """Whether an enumeration takes a value, somewhere."""
         return any(item.identifier == value for item in self._items(owner))
@@ -219,12 +223,13 @@ class EnumValues:
         return min(len(values ^ identifiers) for identifiers in taken)
 
     def _items(self, owner: str) -> tuple[EnumItem, ...]:
-        """The items that a property, or a function's parameter, takes somewhere."""
+        """The items that a property, or a function's parameter, takes somewhere, or that a function returns."""
         symbol, parameter = self._reader.symbol(plain_path(owner)), argument_of(owner)
         if symbol is None:
             return ()
         named = (given.enum_items for given in symbol.parameters if given.name == parameter)
-        items = next(named, ()) if parameter else symbol.enum_items
+        own = symbol.enum_items or [item for returned in symbol.returns for item in returned.enum_items]
+        items = next(named, ()) if parameter else own
         return tuple(item for item in items if item.is_taken)
 
     def _is_word(self, owner: str, values: Sequence[str]) -> bool:

@@ -9,6 +9,7 @@ from kb_build.index.analysis import key
 from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT
 from kb_build.symbols.api_names import OPERATORS, TYPES
 from kb_serve.reader import PROPERTIES
+from kb_serve.recognise.message_patterns import is_message
 from kb_serve.recognise.names.named.addresses import find_page
 from kb_serve.recognise.names.named.enum_values import is_quoted_value, is_value
 from kb_serve.recognise.recognition import WHOLE_LABEL
@@ -21,6 +22,10 @@ if TYPE_CHECKING:
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 
 _MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
+# A name that is no word: with a ``_`` or a capital within.
+_NAME = re.compile(r"(?=\w*[a-z\d](?:_\w|[A-Z]))[A-Za-z][\w.]+")
+_CODE = frozenset("()[]=")
+_MARKS = ",;:.?!`'\"()"
 _FEW = 3
 _NEAR = 2  # dots in the path of a module that a bare word may mean
 _LONG_LABEL = 3  # words, which no question has by chance
@@ -109,6 +114,8 @@ class Spellings:
             self._labelled(text, recognition)
             self._labels_within(text.split(), recognition)
             self._lost_within(text.lower().split(), recognition)
+            if not is_message(query) and _CODE.isdisjoint(query):
+                self._lost_names(text.split(), recognition)
         rows = self._reader.by_key(key(called))
         if rows:
             self._spelled(called, rows, recognition)
@@ -238,6 +245,16 @@ class Spellings:
                 recognition.add_removed(removed)
             if lost:
                 return
+
+    def _lost_names(self, words: Sequence[str], recognition: Recognition) -> None:
+        """Adds what other versions alone have by the names among words, as code writes them: ``use_auto_smooth,
+        calc_normals_split``.
+        """
+        names = [word.strip(_MARKS) for word in words] if len(words) <= _MOST_WORDS else []
+        for name in dict.fromkeys(filter(_NAME.fullmatch, names)):
+            lost = self._lost(name)
+            for removed in lost if len(lost) <= _FEW else self._lost_members(name):
+                recognition.add_removed(removed)
 
     def _lost(self, name: str) -> list[RemovedSymbol]:
         """What other versions alone have by a name of several words, as a path or as a member of some class."""
