@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from mcp_types import CallToolResult, TextContent, Tool, ToolAnnotations
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from kb_serve.answer.answer_kind import AnswerKind
+from kb_serve.answer.docs_answer import AnswerKind
 from kb_serve.errors import BadQuery
 from kb_serve.query_limits import LEAST_TOKENS, LIMIT, LONGEST_QUERY, MAX_TOKENS
 from simworlds.schemas.faults import describe_faults

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench.markdown_tables import Table
-from kb_serve.answer.topic_overview import Topics
-from kb_serve.answer.topic_steps import numbered
+from kb_serve.answer.steps.order import numbered
+from kb_serve.answer.topic.overview import Topics
 from kb_serve.reader import BaseReader
 from measurements.report import ReportPart, TargetFigure
 from measurements.setting import say

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import stems_of
 from kb_build.symbols.api_names import TYPES
-from kb_serve.answer.asked_values import ASKED_NOTHING, asked_of, asked_words
 from kb_serve.answer.budget import AnswerBlock, tokens
-from kb_serve.answer.docs_answer import DocsAnswer, Draft, draft_of, paged, with_notes
+from kb_serve.answer.drafts import Draft, draft_of, paged, with_notes
+from kb_serve.answer.facts.asked_values import ASKED_NOTHING, asked_of, asked_words
 from kb_serve.answer.hit_lines import NAMES, HitLines
 from kb_serve.answer.hits import hits_of
 from kb_serve.answer.known.practice import Practice
-from kb_serve.answer.made_things import made_with
 from kb_serve.answer.pages import page_blocks
 from kb_serve.answer.render import MarkdownRenderer
-from kb_serve.answer.topic_overview import STEPS, Topics
+from kb_serve.answer.topic.overview import STEPS, Topics
+from kb_serve.answer.ways.made_things import made_with
 from kb_serve.errors import BadQuery
 from kb_serve.query_limits import LEAST_TOKENS, LIMIT, MAX_LIMIT
 from kb_serve.rank.merging import SURE, QueryRanker, Ranking
@@ -28,9 +28,10 @@ from kb_serve.recognise.several import parts_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
-    from kb_serve.answer.asked_values import AskedOf
+    from kb_serve.answer.docs_answer import DocsAnswer
+    from kb_serve.answer.facts.asked_values import AskedOf
     from kb_serve.answer.hits import Hit
-    from kb_serve.answer.topic_overview import TopicOverview
+    from kb_serve.answer.topic.overview import TopicOverview
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.several import QuestionPart
 

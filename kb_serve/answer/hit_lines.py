@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.lines import first_sentence, written
-from kb_serve.answer.asked_values import asked_values, unsaid
 from kb_serve.answer.budget import AnswerBlock, clip
+from kb_serve.answer.facts.asked_values import asked_values, unsaid
 from kb_serve.answer.pages import said_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kb_serve.answer.asked_values import AskedValue
+    from kb_serve.answer.facts.asked_values import AskedValue
     from kb_serve.answer.hits import Hit
     from kb_serve.rank.ranked_id import RankedId
     from kb_serve.reader import BaseReader, Creation, SymbolEntry

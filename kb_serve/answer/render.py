@@ -9,27 +9,28 @@ from kb_build.symbols.api_names import SIDES, STRUCT, TYPES
 from kb_build.symbols.flags import is_stand_in
 from kb_build.symbols.lines import fatal_lines, mode_needed, poll_line, version_meant, written
 from kb_build.symbols.records import BARE_DATA, PAIRS, STATIC
-from kb_serve.answer.arguments import argument_lines, arguments, operator_call
-from kb_serve.answer.asked_values import ASKED_NOTHING
 from kb_serve.answer.budget import AnswerBlock
-from kb_serve.answer.calls_in_areas import calls_in_areas
-from kb_serve.answer.condition_lines import condition_lines
-from kb_serve.answer.enum_items import item_lines
-from kb_serve.answer.leads_to import leads_to
-from kb_serve.answer.outcomes import outcomes
-from kb_serve.answer.own_classes import asked_of_classes, definition
+from kb_serve.answer.facts.arguments import argument_lines, arguments, operator_call
+from kb_serve.answer.facts.asked_values import ASKED_NOTHING
+from kb_serve.answer.facts.conditions import condition_lines
+from kb_serve.answer.facts.enum_items import item_lines
+from kb_serve.answer.facts.members_in_brief import is_machinery
+from kb_serve.answer.facts.outcomes import outcomes
+from kb_serve.answer.facts.own_classes import asked_of_classes, definition
+from kb_serve.answer.facts.properties import facts
+from kb_serve.answer.facts.shown_uses import use_text
+from kb_serve.answer.facts.switches import switch_lines
+from kb_serve.answer.facts.swizzles import swizzle_text, without_swizzles
 from kb_serve.answer.pages import passage_block
-from kb_serve.answer.place_lines import place_lines, reached_as
-from kb_serve.answer.property_facts import facts
-from kb_serve.answer.shown_uses import use_text
-from kb_serve.answer.switches import switch_lines
-from kb_serve.answer.swizzles import swizzle_text, without_swizzles
+from kb_serve.answer.ways.leads_to import leads_to
+from kb_serve.answer.ways.operator_needs import calls_in_areas
+from kb_serve.answer.ways.place_lines import place_lines, reached_as
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
 
     from kb_build.symbols.records import Symbol
-    from kb_serve.answer.asked_values import AskedOf
+    from kb_serve.answer.facts.asked_values import AskedOf
     from kb_serve.reader import BaseReader, SymbolEntry
 
 _PUT_TOGETHER = (
@@ -40,14 +41,6 @@ _BARE_DATA = (
 )
 _FEW_PARAMETERS = 8
 _CONSTRUCTOR = "__init__"  # called as the class itself is
-_MACHINERY = {
-    "bl_rna_get_subclass",
-    "bl_rna_get_subclass_py",
-    "bl_system_properties_get",
-    "input_template",
-    "output_template",
-    "is_registered_node_type",
-}
 
 
 def _once_paired(members: Iterable[SymbolEntry]) -> str:
@@ -65,11 +58,6 @@ def _listed(title: str, entries: Iterable[SymbolEntry], last: str = "") -> Itera
 def _functions(members: Iterable[SymbolEntry]) -> list[SymbolEntry]:
     """The functions among a class's members, without those that every class has."""
     return [entry for entry in members if entry.kind == "function" and not entry.name.startswith("bl_rna_")]
-
-
-def is_machinery(entry: SymbolEntry) -> bool:
-    """Whether a member is one that every class has, for Blender's own use, or a class within a class."""
-    return entry.kind == "class" or entry.name in _MACHINERY
 
 
 @dataclass(frozen=True, slots=True)

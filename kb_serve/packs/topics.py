@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_serve.answer.budget import tokens
-from kb_serve.answer.topic_overview import Topics
-from kb_serve.answer.topic_steps import numbered
+from kb_serve.answer.steps.order import numbered
+from kb_serve.answer.topic.overview import Topics
 from kb_serve.packs.section import fitting
 
 if TYPE_CHECKING:

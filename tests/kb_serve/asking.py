@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from whole import examples
 
 from kb_build.index.analysis import key
-from kb_serve.answer.steps.topic_names import TopicNames
-from kb_serve.answer.topic_steps import Steps, numbered
+from kb_serve.answer.steps.names.topic_names import TopicNames
+from kb_serve.answer.steps.order import Steps, numbered
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

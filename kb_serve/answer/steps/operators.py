@@ -7,21 +7,20 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import TYPES
-from kb_build.symbols.flags import operator_active, operator_areas, refused_nothing
-from kb_build.symbols.lines import held, literal, operator_needs
-from kb_serve.answer.arguments import of_file_browser
-from kb_serve.answer.calls_in_areas import calls_in_areas
-from kb_serve.answer.condition_lines import condition_lines, switches_off
+from kb_build.symbols.flags import operator_active, operator_areas
+from kb_build.symbols.lines import literal
+from kb_serve.answer.facts.arguments import of_file_browser
+from kb_serve.answer.steps.scene.before_operators import before
+from kb_serve.answer.ways.operator_needs import needs_text, never_ran
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from kb_build.symbols.records import Symbol
-    from kb_serve.answer.steps.new_scene import NewScene
-    from kb_serve.answer.steps.topic_names import TopicNames
+    from kb_serve.answer.steps.names.topic_names import TopicNames
+    from kb_serve.answer.steps.scene.new_scene import NewScene
     from kb_serve.reader import BaseReader
 
-_MODE = f"{TYPES}Object.mode"
 POINT_CACHE = f"{TYPES}PointCache"  # what operators bake
 _MOST = 4
 _MOST_OF_MODIFIERS = 2
@@ -78,7 +77,7 @@ def runs(names: TopicNames, scene: NewScene, *, is_cached: bool, is_made: bool) 
     operators = [
         path
         for path, symbol in runnable.items()
-        if not (_never_ran(symbol) or _wants_a_path(symbol) or scene.obj.is_refused_by(symbol))
+        if not (never_ran(symbol) or _wants_a_path(symbol) or scene.obj.is_refused_by(symbol))
         and path.split(".")[2] not in others
         and weights.get(path, 0) >= (1 if path.split(".")[2] in names.keys else _USED_ELSEWHERE)
         and not (is_made and _is_beside(path, names, reader))
@@ -167,77 +166,14 @@ def _first_word(path: str) -> str:
     return path.split(".")[3].split("_", maxsplit=1)[0]
 
 
-def before(operator: Symbol, scene: NewScene) -> Iterator[str]:
-    """The steps after which an operator runs, as far as they are known and have not been told."""
-    calls = calls_needed(operator)
-    if all(_is_taken(call, scene) for call in calls):
-        yield from scene.pointers.calls(
-            call for call in calls if scene.reader.made_by_call(call) not in scene.shown
-        )
-    mode = _mode_of_heading(operator, scene.reader)
-    if ready := scene.obj.to_mode(mode) if mode else scene.obj.ready_for(operator):
-        yield "; ".join(f"`{code}`" for code in ready)
-    for gate, value in switches_off(operator, scene.reader):
-        owner = scene.reader.symbol(gate.owner)
-        reached = scene.variables.there(gate.owner) or (owner.reached if owner else "")
-        within = scene.pointers.reach(held(scene.variables.within(reached)), makes=True) if reached else None
-        if within is not None:
-            yield from within.steps
-            yield from scene.pointers.setting(f"{within.expression}.{gate.name}", value)
-
-
-def _mode_of_heading(operator: Symbol, reader: BaseReader) -> str:
-    """The mode whose name heads what the manual says of an operator, where its poll takes any: in others it does
-    nothing. Empty for none.
-    """
-    place = None if operator_active(operator)[1] else reader.passage(operator.path)
-    page, modes = reader.page(place[0]) if place else None, reader.symbol(_MODE)
-    if place is None or page is None or modes is None:
-        return ""
-    heading = page.sections[place[1]].title
-    return next((item.identifier for item in modes.enum_items if item.name == heading), "")
-
-
-def calls_needed(operator: Symbol) -> tuple[str, ...]:
-    """The calls that must have been made before an operator runs."""
-    return operator.needs.calls if operator.needs else ()
-
-
-def _is_taken(call: str, scene: NewScene) -> bool:
-    """Whether the object is of a type that takes what a call makes on it."""
-    cls = scene.reader.made_by_call(call)
-    creation = scene.reader.creations([cls]).get(cls) if cls else None
-    return creation is None or scene.obj.is_made_on(call.partition(".")[0], creation)
-
-
 def _is_beside(path: str, names: TopicNames, reader: BaseReader) -> bool:
     """Whether neither an operator nor its module is called as the topic is, or it waits for a window."""
     _, _, module, name = path.split(".")
     if names.has_title(name) or names.title.removesuffix("s") in key(name):
         return False
     symbol = reader.symbol(path)
-    waits = symbol is not None and (bool(operator_areas(symbol)) or _never_ran(symbol))
+    waits = symbol is not None and (bool(operator_areas(symbol)) or never_ran(symbol))
     return waits if key(module) == names.title or _BAKE in name.split("_") else True
-
-
-def _never_ran(operator: Symbol) -> bool:
-    """Whether an operator's poll said no wherever it was tried, without a window."""
-    return not (operator_needs(operator) or refused_nothing(operator))
-
-
-def asked(operator: Symbol, reader: BaseReader) -> str:
-    """What must be before an operator runs, and does what is wanted; empty for nothing."""
-    return "; ".join(_asked(operator, reader))
-
-
-def _asked(operator: Symbol, reader: BaseReader) -> Iterator[str]:
-    if needs := operator_needs(operator):
-        yield f"takes {needs}"
-    elif _never_ran(operator):
-        yield "not seen to run without a window"
-    for path, area in calls_in_areas(operator, reader):
-        yield f"calls `{path}`, which takes {area}"
-    yield from condition_lines(operator, reader)
 
 
 def _runs(path: str) -> bool:
@@ -276,7 +212,7 @@ def _line(operator: Symbol, reader: BaseReader, argument: str = "") -> str:
     entry = reader.entry(operator.path)
     said = entry.line.partition(" — ")[2] if entry else ""
     more = f" and {left} more" if left else ""
-    needed = asked(operator, reader)
+    needed = needs_text(operator, reader)
     return (
         f"`{operator.path}({', '.join(arguments)})`{more}"
         + (f" — {said}" if said else "")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from kb_build.symbols.records import EnumItem, Parameter, Symbol
 from kb_build.symbols.taken import NEVER
-from kb_serve.answer.asked_values import asked_values, asked_words
+from kb_serve.answer.facts.asked_values import asked_values, asked_words
 
 _EFFECT = Symbol(
     "bpy.types.StripsTopLevel.new_effect", "function", label="New Effect",

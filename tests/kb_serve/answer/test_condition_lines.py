@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.answer.condition_lines import condition_lines
+from kb_serve.answer.facts.conditions import condition_lines
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.answer.leads_to import leads_to
+from kb_serve.answer.ways.leads_to import leads_to
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.answer.made_things import made_with
+from kb_serve.answer.ways.made_things import made_with
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from told_by_blender import told_by_blender
 
-from kb_serve.answer.makers_of_instances import told_makers
+from kb_serve.answer.ways.makers_of_instances import told_makers
 
 if TYPE_CHECKING:
     from pathlib import Path

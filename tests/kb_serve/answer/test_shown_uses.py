@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.answer.shown_uses import use_text
+from kb_serve.answer.facts.shown_uses import use_text
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

@@ -10,8 +10,8 @@ from asking import TYPES, steps
 
 from kb_build.store import Contents, write_base
 from kb_build.symbols.records import Link, Page, Section
-from kb_serve.answer.steps.topic_names import TopicNames
-from kb_serve.answer.topic_steps import Steps, numbered
+from kb_serve.answer.steps.names.topic_names import TopicNames
+from kb_serve.answer.steps.order import Steps, numbered
 from kb_serve.reader import BaseReader
 from measurements.steps import do_steps
 

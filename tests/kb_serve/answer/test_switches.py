@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from kb_serve.answer.facts.switches import switch_lines
 from kb_serve.answer.known.practice import Practice
-from kb_serve.answer.switches import switch_lines
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

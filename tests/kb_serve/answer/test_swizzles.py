@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from told_by_blender import told_by_blender
 
-from kb_serve.answer.swizzles import swizzle_text, without_swizzles
+from kb_serve.answer.facts.swizzles import swizzle_text, without_swizzles
 
 if TYPE_CHECKING:
     from pathlib import Path

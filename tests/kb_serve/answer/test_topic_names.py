@@ -10,16 +10,16 @@ import pytest
 
 from kb_build.store import Contents, write_base
 from kb_build.symbols.records import Link, Page, Section
-from kb_serve.answer.topic_members import TopicMembers
-from kb_serve.answer.topic_overview import Topics
-from kb_serve.answer.topic_steps import Steps
+from kb_serve.answer.steps.order import Steps
+from kb_serve.answer.topic.classes_and_operators import TopicMembers
+from kb_serve.answer.topic.overview import Topics
 from kb_serve.reader import BaseReader
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from kb_serve.answer.steps.topic_names import TopicNames
+    from kb_serve.answer.steps.names.topic_names import TopicNames
 
 TYPES = "bpy.types."
 NODES_OF_GEOMETRY = ("bpy_struct", "Node", "NodeInternal", "GeometryNode")  # what these are derived from

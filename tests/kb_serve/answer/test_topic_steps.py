@@ -9,8 +9,8 @@ from asking import TYPES, steps
 
 from kb_build.index.analysis import terms
 from kb_build.symbols.api_names import STRUCT
-from kb_serve.answer.steps.topic_names import TopicNames
-from kb_serve.answer.topic_steps import Steps, numbered
+from kb_serve.answer.steps.names.topic_names import TopicNames
+from kb_serve.answer.steps.order import Steps, numbered
 from measurements.steps import do_steps
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import pytest
 
 from kb_build.store import Contents, write_base
 from kb_build.symbols.records import Link, Page, Section
-from kb_serve.answer.topic_overview import Topics
+from kb_serve.answer.topic.overview import Topics
 from kb_serve.reader import BaseReader
 
 if TYPE_CHECKING:

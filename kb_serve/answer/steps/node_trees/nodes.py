@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.records import PAIRS
-from kb_serve.answer.render import is_machinery
-from kb_serve.answer.steps.members import call_of, inputs_of
-from kb_serve.answer.steps.node_trees.node_items import NodeItems
-from kb_serve.answer.steps.node_trees.node_links import NodeLinks
-from kb_serve.answer.steps.pointer_fills import stays_empty
+from kb_serve.answer.facts.members_in_brief import call_of, inputs_of, is_machinery
+from kb_serve.answer.steps.node_trees.items import NodeItems
+from kb_serve.answer.steps.node_trees.links import NodeLinks
+from kb_serve.answer.steps.node_trees.sockets import NodeSockets
+from kb_serve.answer.steps.scene.pointer_fills import stays_empty
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from kb_serve.answer.steps.creation_calls import CreationCalls
-    from kb_serve.answer.steps.new_scene import NewScene
-    from kb_serve.answer.steps.node_trees.trees import TreeSteps
+    from kb_serve.answer.steps.making.creation_calls import CreationCalls
+    from kb_serve.answer.steps.making.trees import TreeSteps
+    from kb_serve.answer.steps.scene.new_scene import NewScene
     from kb_serve.reader import Creation, SymbolEntry
 
 _FUNCTIONS = 3  # of one node
@@ -37,11 +37,12 @@ class NodeSteps:
         self._calls = calls
         self._trees = trees
         self._items = NodeItems(scene)
-        self._links = NodeLinks(scene, self._items)
+        self._sockets = NodeSockets(scene.reader, self._items)
+        self._links = NodeLinks(scene, self._items, self._sockets)
 
     def made(self, creations: Mapping[str, Creation]) -> Iterator[str]:
         """Nodes, in the tree that takes the first of them: one that stands alone, unless most are ends of zones."""
-        ends = [node for node in creations if self._links.partner(node)]
+        ends = [node for node in creations if self._sockets.partner(node)]
         if len(ends) < len(creations) / 2:
             creations = {node: creations[node] for node in sorted(creations, key=ends.__contains__)}
         tree = self._trees.taking(next(iter(creations)))
@@ -111,7 +112,7 @@ class NodeSteps:
         """How nodes are made, and the first of them joined to what is before and behind it in the tree."""
         main = next(iter(creations))
         yield from self._calls.making(creations)
-        if partner := self._links.partner(main):
+        if partner := self._sockets.partner(main):
             first, last = sorted((main, partner))  # Input before Output
             yield from self._zone(first, last, tree)
         else:
@@ -141,7 +142,7 @@ class NodeSteps:
             entries = self._reader.members(node).values()
             functions = [entry for entry in entries if entry.kind == "function" and not is_machinery(entry)]
             # Of several zones one is enough.
-            is_told = not functions or functions[0].name in told or self._links.partner(node)
+            is_told = not functions or functions[0].name in told or self._sockets.partner(node)
             if is_told or not self._trees.is_made_for(node):
                 continue
             if node not in self._scene.shown:

@@ -1,0 +1,1 @@
+"""Steps that make things, their parts and the trees of nodes, and put them where they count."""

@@ -1,0 +1,1 @@
+"""Steps that set and call something, on what was made or what is there."""
