@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.state.source_files import keeps_annotations
 from kb_build.flow.syntax.trees import walk
 from kb_check.findings import Finding, Fix
-from kb_check.names.imports import import_of
+from kb_check.names.usual_imports import import_of
 from kb_check.rule import Rule
 from kb_check.running.tried import is_tried
 from kb_check.script import once_per_script
