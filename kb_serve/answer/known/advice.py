@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
-from kb_build.index.analysis import stem, words
 from kb_build.symbols.api_names import HANDLERS, TYPES
 from kb_build.symbols.lines import GET_EVALUATED
+from kb_serve.answer.known.told_of import Advice, of, stems
 from kb_serve.recognise.code.products import CLASSES, WITH_AT
 from kb_serve.recognise.messages.keys import KEY_OF_SLOTS, SLOTTED
 from kb_serve.recognise.messages.nameless.python import PLAIN_FUNCTION
@@ -21,41 +19,6 @@ _RIGID_BODY = f"{TYPES}RigidBodyObject"
 _RANGES = f"{TYPES}bpy_struct.id_properties_ui"
 _BAKES_FLUIDS = "bpy.ops.fluid.bake_all"
 _PERSISTENT = f"{HANDLERS}persistent"
-
-
-def stems(text: str) -> frozenset[str]:
-    """The stems of some words; of ``h264`` the number alone, as a letter is a variable of any script."""
-    return frozenset(stem(word) for word in words(text) if len(word) > 1)
-
-
-class Advice(NamedTuple):
-    """A sentence, and what it is told of: symbols, those whose paths begin so, pages that explain a symbol or (in
-    ``chapters_of``) stand in one folder with those.
-
-    A question that does not name the symbol must have a word of ``about``, if there are any, and every question one of
-    ``asked``. It is told of any symbol where the question has a word of each of ``wherever``, and none of ``unless``;
-    and only where the base has the symbol that it ``needs``, but not of that, and is of a Blender from ``since`` on
-    that comes ``before`` another.
-    """
-
-    text: str
-    symbols: frozenset[str] = frozenset()
-    beginning: tuple[str, ...] = ()
-    explained: str = ""
-    chapters_of: str = ""
-    about: frozenset[str] = frozenset()
-    asked: frozenset[str] = frozenset()
-    wherever: tuple[frozenset[str], ...] = ()
-    unless: frozenset[str] = frozenset()
-    needs: str = ""
-    since: tuple[int, int] = (0, 0)
-    before: tuple[int, int] = (99, 0)
-
-
-def of(*names: str) -> frozenset[str]:
-    """The paths of some of RNA's classes and their members."""
-    return frozenset(f"{TYPES}{name}" for name in names)
-
 
 _STAYING = (
     f"A handler without `@{_PERSISTENT}` above it is gone after a file is loaded: it is removed before `load_post` "

@@ -14,7 +14,7 @@ from simworlds.releases import version_key
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from kb_serve.answer.known.advice import Advice
+    from kb_serve.answer.known.told_of import Advice
     from kb_serve.reader import BaseReader
 
 _MOST_SAID = 20  # words; in more, which are code, those of a group stand by chance

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from kb_build.symbols.lines import GET_EVALUATED
-from kb_serve.answer.known.advice import Advice, of, stems
+from kb_serve.answer.known.told_of import Advice, of, stems
 
 _STALE = (
     "`ob.matrix_world` takes in what a script has set (`ob.location`, a parent, a constraint) only after "
