@@ -17,7 +17,7 @@ from kb_serve.answer.topic.meant_pages import CHAPTERS, PAGES_OF_NODES, SHORT_FO
 from kb_serve.answer.ways.operator_needs import calls_needed
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
@@ -43,47 +43,67 @@ class TopicMembers:
         """The classes and operators of a topic: those that its pages explain, and those with its name."""
         last = _without_place(slug.removesuffix("/index").rpartition("/")[2].replace("_", " "))
         title = _without_place(title)
-        words = dict.fromkeys((frozenset(terms(title)), frozenset(terms(last))))
         is_kind = self._is_only_kind(slug, title, last)
+        names = self._words_of(slug, title, last, is_kind=is_kind)
+        explained = self._explained(slug, names.of_kind)
+        nearness = explained | self._named(slug, names, explained)
+        for path in self._called_operators(slug, (title, last)):
+            nearness.setdefault(path, _NEAR)
+        modules = [module for module in names.keys if not (is_kind and module == key(last))]
+        on_modules = (path for module in modules for path in self._operators_of(module, slug))
+        nearness |= dict.fromkeys(on_modules, _ON_ITS_MODULE * _NEAR)
+        nearness = dict.fromkeys(self._worked_on(slug, nearness), _NEAR) | nearness
+        self._weigh(nearness, names)
+        if not slug.startswith(_EDITORS):
+            names.elsewhere = frozenset(
+                path
+                for path in names.classes
+                if path not in explained and self._is_on_other_pages(path, slug)
+            )
+        return names
+
+    def _words_of(self, slug: str, title: str, last: str, *, is_kind: bool) -> TopicNames:
+        """The words of a topic, of which ``last`` are those of its address, which may only say of what kind it is; and
+        what its page explains.
+        """
+        words = dict.fromkeys((frozenset(terms(title)), frozenset(terms(last))))
         if is_kind:
             del words[frozenset(terms(last))]
+        has_pages = bool(self._reader.page_children(slug))
         names = TopicNames(
             frozenset({key(title), key(last)}),
             tuple(filter(None, words)),
-            frozenset()
-            if self._reader.page_children(slug)
-            else frozenset(self._reader.symbols_of_page(slug)),
+            frozenset(() if has_pages else self._reader.symbols_of_page(slug)),
             title=key(title),
         )
         if len(terms(title)) > 1 and names.explained:
             names.of_kind = self._of_kind(slug, title)
-        nearness = dict.fromkeys(names.of_kind, _NEAR)
+        return names
+
+    def _explained(self, slug: str, of_kind: frozenset[str]) -> dict[str, float]:
+        """What a topic's pages explain, and how near it is to the topic."""
+        nearness = dict.fromkeys(of_kind, _NEAR)
         for below, depth in subtree(slug, self._reader).items():
             for path in self._reader.symbols_of_page(below):
                 nearness.setdefault(path, _NEAR if depth < 2 else _FAR)
-        explained = frozenset(nearness)
-        is_operated = any(
-            names.names(path.rpartition(".")[2]) for path in nearness if not path.startswith(TYPES)
-        )
+        return nearness
+
+    def _named(self, slug: str, names: TopicNames, explained: Mapping[str, float]) -> dict[str, float]:
+        """The classes with a topic's words in their names, and how near they are to it."""
+        operators = (path for path in explained if not path.startswith(TYPES))
+        is_operated = any(names.names(path.rpartition(".")[2]) for path in operators)
+        nearness: dict[str, float] = {}
         for path, words in self._classes.items():
-            if is_operated and path not in nearness and _OWN_NAMES.search(path):
+            if is_operated and path not in explained and _OWN_NAMES.search(path):
                 continue
             if any(wanted <= words for wanted in names.words) and not self._is_elsewhere(
                 path, words, names, slug
             ):
-                nearness[path] = _NAMED * nearness.get(path, _ASIDE if _OWN_NAMES.search(path) else _FAR)
-        for path in self._called_operators(slug, (title, last)):
-            nearness.setdefault(path, _NEAR)
-        nearness |= dict.fromkeys(
-            (
-                path
-                for module in names.keys
-                if not (is_kind and module == key(last))
-                for path in self._operators_of(module, slug)
-            ),
-            _ON_ITS_MODULE * _NEAR,
-        )
-        nearness = dict.fromkeys(self._worked_on(slug, nearness), _NEAR) | nearness
+                nearness[path] = _NAMED * explained.get(path, _ASIDE if _OWN_NAMES.search(path) else _FAR)
+        return nearness
+
+    def _weigh(self, nearness: dict[str, float], names: TopicNames) -> None:
+        """Adds the classes and operators to a topic's names, each with what it counts for it, the heaviest first."""
         weights = self._weights(nearness)
         for path, near in sorted(nearness.items(), key=lambda row: (-row[1] * weights[row[0]], row[0])):
             entry = self._reader.entry(path)
@@ -91,14 +111,7 @@ class TopicMembers:
                 names.operators[path] = near * weights[path] * (_UNUSUAL if "preset" in entry.name else 1)
             elif entry is not None and entry.kind == "class" and entry.group == "data":
                 names.classes[path] = near * weights[path]
-        if not slug.startswith(_EDITORS):
-            names.elsewhere = frozenset(
-                path
-                for path in names.classes
-                if path not in explained and self._is_on_other_pages(path, slug)
-            )
         names.operators = dict(sorted(names.operators.items(), key=lambda row: -row[1]))
-        return names
 
     def _is_only_kind(self, slug: str, title: str, last: str) -> bool:
         """Whether the address of a page that explains classes says only of what kind these are, and the title which
@@ -209,7 +222,7 @@ class TopicMembers:
         """Every data class with the words of its name."""
         return {path: frozenset(terms(name)) for path, name in self._reader.data_classes}
 
-    def _weights(self, paths: Iterator[str] | dict[str, float]) -> dict[str, float]:
+    def _weights(self, paths: Collection[str]) -> dict[str, float]:
         """What symbols count: themselves, and of a class the heaviest of its members."""
         own = self._reader.weights(list(paths))
         totals: dict[str, float] = {}

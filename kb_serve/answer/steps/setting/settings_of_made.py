@@ -6,21 +6,20 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import ID, OPERATORS, TYPES
-from kb_build.symbols.flags import empty_when_new, fillers
-from kb_build.symbols.lines import mode_needed
-from kb_build.symbols.records import EMPTY, READ_ONLY
+from kb_build.symbols.flags import fillers
+from kb_build.symbols.records import READ_ONLY
 from kb_serve.answer.facts.members_in_brief import (
     MOST_SETTINGS,
-    are_settings_seen,
     call_of,
     own_settings,
     settings_of,
 )
 from kb_serve.answer.steps.making.parts import parts
 from kb_serve.answer.steps.names.variable_names import OBJ
-from kb_serve.answer.steps.operators import POINT_CACHE, UNDO
+from kb_serve.answer.steps.operators import UNDO
 from kb_serve.answer.steps.scene.pointer_fills import stays_empty
 from kb_serve.answer.steps.scene.working_object import OTHER
+from kb_serve.answer.steps.setting.collections_of_made import LEAST, MOST_MEMBERS, ElementSteps
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -30,14 +29,10 @@ if TYPE_CHECKING:
     from kb_serve.answer.steps.scene.new_scene import NewScene
     from kb_serve.reader import Creation, SymbolEntry
 
-_LEAST = 1  # weight of a collection or function
-_MEMBERS = 3  # collections, and functions
 _HOLDERS = 4  # pointers of a thing whose settings are shown
 _OTHER_KINDS = 4  # besides the one that is made, of which each is told
 _OF_OTHER_KIND = 4  # settings
-_ADDING = ("new", "add", "append", "link")  # what functions that add are called
 _FILE_ALONE = "`filepath`"  # settings of what is a file's contents
-_STUB = "UnknownType"  # Blender's, for elements of which it says nothing
 _LOOK_UP = frozenset({"get", "current", "find"})  # in names of functions that do nothing to a thing
 OTHERS_ELEMENT = re.compile(r"\[.*\].*\.")  # … of what has an element that somebody else must have made
 
@@ -49,6 +44,7 @@ class SettingSteps:
         self._names = names
         self._scene = scene
         self._reader = scene.reader
+        self._elements = ElementSteps(names, scene)
 
     def own(self, cls: str, creation: Creation) -> Iterator[str]:
         """A new thing's own settings."""
@@ -85,11 +81,11 @@ class SettingSteps:
         if not variable:
             return
         entries = self._reader.members(cls).values()
-        yield from self._in(cls, variable)
-        yield from self._on_elements(cls, variable)
+        yield from self._elements.steps(cls, variable)
+        yield from self._elements.on_elements(cls, variable)
         yield from parts(cls, variable, self._names, self._reader)
         calls = [f"{variable}.{call_of(entry)}" for entry in self._calls(entries)]
-        if calls := [*calls, *self._calls_on_parts(cls, variable)]:
+        if calls := [*calls, *self._elements.calls_on_parts(cls, variable)]:
             yield "call " + ", ".join(f"`{call}`" for call in calls)
         yield from self._below(cls, variable)
 
@@ -99,69 +95,6 @@ class SettingSteps:
         if symbol is None or not symbol.reached:
             return self._scene.variables.of(cls)
         return "" if OTHERS_ELEMENT.search(symbol.reached) else symbol.reached
-
-    def _main(self, entries: Iterable[SymbolEntry]) -> list[SymbolEntry]:
-        return self._reader.heaviest(entries, _LEAST)[:_MEMBERS]
-
-    def _in(self, cls: str, variable: str) -> Iterator[str]:
-        """The collections of a thing, and what adds to them; last what is added in another mode alone."""
-        by_mode: dict[str, list[SymbolEntry]] = {"": []}
-        for entry in self._collections(cls):
-            by_mode.setdefault(self._mode_of(entry), []).append(entry)
-        if anywhere := by_mode.pop(""):
-            yield f"in `{variable}`: " + ", ".join(self._held(entry, variable) for entry in anywhere)
-        for mode, entries in by_mode.items():
-            if steps := self._scene.obj.to_mode(mode):
-                yield "; ".join(f"`{step}`" for step in steps)
-            for entry in entries:
-                yield from self._added(entry, variable)
-
-    def _added(self, collection: SymbolEntry, variable: str) -> Iterator[str]:
-        """The step that adds to a collection of a thing, and the settings of what it adds."""
-        element = f"{TYPES}{collection.target}"
-        name = self._scene.variables.of(element)
-        yield f"`{name} = {variable}.{collection.name}.{self._added_by(collection)}` → `{collection.target}`"
-        if settings := settings_of(element, self._reader):
-            yield f"set on `{name}`: {settings}"
-
-    def _on_elements(self, cls: str, variable: str) -> Iterator[str]:
-        """The settings of the elements that a new thing has, where nothing makes them: a variable's target; the points
-        of a shape key, of which it has as many as the mesh.
-        """
-        for entry in self._collections(cls):
-            element = f"{TYPES}{entry.target}"
-            symbol = self._reader.symbol(entry.path)
-            may_have_some = symbol is not None and EMPTY not in symbol.flags
-            if not (may_have_some and self._belongs(element)) or self._added_by(entry):
-                continue
-            settings = "" if self._reader.creations([element]) else settings_of(element, self._reader)
-            if not settings:
-                continue
-            self._scene.shown.add(element)
-            has_one = are_settings_seen(element, self._reader)
-            elements = f"`{variable}.{entry.name}[0]`" if has_one else f"each of `{variable}.{entry.name}`"
-            yield f"set on {elements} (`{entry.target}`): {settings}"
-
-    def _collections(self, cls: str) -> list[SymbolEntry]:
-        """The main collections of a thing; after those that scripts use most, its own that things are added to."""
-        all_ = [
-            entry
-            for entry in self._reader.members(cls).values()
-            if entry.type == "collection" and entry.target != _STUB
-        ]
-        main = self._main(all_)
-        own = (entry for entry in all_ if entry.owner == cls and entry not in main and self._added_by(entry))
-        return [*main, *own][:_MEMBERS]
-
-    def _mode_of(self, collection: SymbolEntry) -> str:
-        """The mode of the object in which alone something is added to a collection of its data; empty for any."""
-        if not self._reader.is_object_data(collection.owner):
-            return ""
-        made = self._adding(collection)
-        maker = self._reader.symbol(made.maker) if made else None
-        if maker is None or not mode_needed(maker):
-            return ""
-        return next((refusal.mode for refusal in maker.refusals if refusal.mode), "")
 
     def _calls(self, entries: Iterable[SymbolEntry]) -> list[SymbolEntry]:
         """The functions that do something to a thing, and do not take away what steps have made of it. One that only
@@ -174,70 +107,14 @@ class SettingSteps:
             if entry.kind == "function" and (UNDO | _LOOK_UP).isdisjoint(entry.name.split("_"))
         ]
         uses = self._reader.use_counts([entry.path for entry in functions])
-        return self._main(entry for entry in functions if uses.get(entry.path) or not self._answers(entry))
+        called = (entry for entry in functions if uses.get(entry.path) or not self._answers(entry))
+        return self._reader.heaviest(called, LEAST)[:MOST_MEMBERS]
 
     def _answers(self, function: SymbolEntry) -> bool:
         """Whether a function gives values that are no things."""
         symbol = self._reader.symbol(function.path)
         given = [result.type for result in symbol.returns] if symbol else []
         return bool(given) and not any(self._reader.entry(f"{TYPES}{kind}") for kind in given)
-
-    def _held(self, entry: SymbolEntry, variable: str) -> str:
-        """A collection of a thing, and the call that adds to it."""
-        call = self._added_by(entry)
-        by = f", by `{variable}.{entry.name}.{call}`{self._with_it(entry)}" if call else ""
-        return f"`.{entry.name}` (`{entry.target}`{by})"
-
-    def _added_by(self, collection: SymbolEntry) -> str:
-        """The call that adds to a collection; empty for none."""
-        if made := self._adding(collection):
-            return made.call.partition(f".{collection.name}.")[2]
-        functions = (
-            self._reader.members(f"{TYPES}{collection.collection}").values() if collection.collection else ()
-        )
-        adding = [one for one in functions if one.kind == "function" and one.name.startswith(_ADDING)]
-        return next((self._given_elements(one, collection) for one in self._reader.heaviest(adding)), "")
-
-    def _given_elements(self, function: SymbolEntry, collection: SymbolEntry) -> str:
-        """A call that adds to a collection, given an element that is there: the object that is linked. What has the
-        collection is none of its own elements.
-        """
-        call, symbol = call_of(function), self._reader.symbol(function.path)
-        for parameter in symbol.parameters if symbol else ():
-            cls = f"{TYPES}{parameter.type}"
-            there = self._scene.variables.there(cls) if parameter.required else ""
-            if there and cls != collection.owner and parameter.type == collection.target:
-                call = re.sub(rf"\b{parameter.name}\b(?=[,)])", there, call)
-        return call
-
-    def _with_it(self, collection: SymbolEntry) -> str:
-        """What is then called on what a new element has: strokes are added to the drawing of a frame."""
-        element = f"{TYPES}{collection.target}"
-        calls = self._calls_on_parts(element, self._scene.variables.of(element))
-        return f", then `{calls[0]}`" if calls else ""
-
-    def _calls_on_parts(self, cls: str, variable: str) -> list[str]:
-        """The main call that adds to each of the things that a new instance has, and that are made with it alone."""
-        calls: list[str] = []
-        for entry in self._reader.members(cls).values():
-            target = f"{TYPES}{entry.target}"
-            pointer = (
-                self._reader.symbol(entry.path) if entry.type == "pointer" and self._belongs(target) else None
-            )
-            if pointer is None or empty_when_new(pointer) or self._reader.creations([target]):
-                continue
-            functions = (one for one in self._reader.members(target).values() if one.kind == "function")
-            adding = (one for one in functions if one.name.startswith(_ADDING))
-            main = self._reader.heaviest(adding, _LEAST)[:1]
-            calls += [f"{variable}.{entry.name}.{call_of(function)}" for function in main]
-        return calls
-
-    def _adding(self, collection: SymbolEntry) -> Creation | None:
-        """What adds to a collection; None where nothing does."""
-        target = f"{TYPES}{collection.target}"
-        made = self._reader.creations([target]).get(target)
-        adds = made is not None and made.maker.rpartition(".")[0] == f"{TYPES}{collection.collection}"
-        return made if adds else None
 
     def _below(self, cls: str, variable: str) -> Iterator[str]:
         """The settings of what a thing points to, the nearest first."""
@@ -290,7 +167,7 @@ class SettingSteps:
     def _pointer(self, entry: SymbolEntry) -> Symbol | None:
         """The pointer that leads to settings of the topic which are the thing's own; None for any other member."""
         target = f"{TYPES}{entry.target}"
-        if entry.type != "pointer" or not self._belongs(target):
+        if entry.type != "pointer" or not self._elements.belongs(target):
             return None
         # What is a thing's own cannot be replaced; another data-block can.
         if not entry.is_read_only and not self._reader.descends(target, ID):
@@ -299,9 +176,6 @@ class SettingSteps:
         if pointer is None or stays_empty(pointer):
             return None
         return pointer if self._names.holds(entry.name) or not _makes_another(pointer) else None
-
-    def _belongs(self, cls: str) -> bool:
-        return cls not in self._scene.shown and (cls in self._names.classes or cls == POINT_CACHE)
 
 
 def _makes_another(pointer: Symbol) -> bool:
