@@ -13,7 +13,8 @@ from kb_build.symbols.flags import operator_areas
 from kb_build.symbols.lines import held
 from kb_serve.answer.steps.names.topic_names import TopicNames
 from kb_serve.answer.steps.names.variable_names import class_called
-from kb_serve.answer.topic.meant_pages import CHAPTERS, PAGES_OF_NODES, SHORT_FOR, subtree
+from kb_serve.answer.topic.meant_pages import CHAPTERS
+from kb_serve.answer.topic.titles import PAGES_OF_NODES, SHORT_FOR, subtree
 from kb_serve.answer.ways.operator_needs import calls_needed
 
 if TYPE_CHECKING:

@@ -12,8 +12,9 @@ from kb_serve.answer.budget import AnswerBlock, clip, tokens
 from kb_serve.answer.pages import own_summary, said_of
 from kb_serve.answer.steps.order import Steps, numbered
 from kb_serve.answer.topic.classes_and_operators import TopicMembers
-from kb_serve.answer.topic.meant_pages import TopicPages, plain_title, subtree
+from kb_serve.answer.topic.meant_pages import TopicPages
 from kb_serve.answer.topic.page_settings import TopicSettings
+from kb_serve.answer.topic.titles import plain_title, subtree
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
