@@ -77,7 +77,17 @@ ORDERS = {
     "kb_serve.recognise.names": ("likely", "named", "elsewhere", "by_words"),
     "kb_serve.answer": (
         *("budget", "pages", "facts", "ways", "render", "steps", "topic"),
-        *("hits", "hit_lines", "known", "docs_answer", "next_call", "drafts", "composer"),
+        *(
+            "hits",
+            "hit_lines",
+            "hit_blocks",
+            "known",
+            "docs_answer",
+            "next_call",
+            "said_twice",
+            "drafts",
+            "composer",
+        ),
     ),
     "kb_serve.answer.steps": (
         *(

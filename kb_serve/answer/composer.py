@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from itertools import zip_longest
-from typing import TYPE_CHECKING
+from itertools import islice, zip_longest
+from typing import TYPE_CHECKING, Literal
 
 from kb_build.index.analysis import stems_of
 from kb_build.symbols.api_names import TYPES
-from kb_serve.answer.budget import AnswerBlock, tokens
+from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.drafts import Draft, draft_of, paged, with_notes
-from kb_serve.answer.facts.asked_values import ASKED_NOTHING, asked_of, asked_words
+from kb_serve.answer.facts.asked_values import asked_of, asked_words
+from kb_serve.answer.hit_blocks import HitBlocks
 from kb_serve.answer.hit_lines import NAMES, HitLines
 from kb_serve.answer.hits import hits_of
 from kb_serve.answer.known.practice import Practice
-from kb_serve.answer.pages import page_blocks
 from kb_serve.answer.render import MarkdownRenderer
+from kb_serve.answer.said_twice import is_said
 from kb_serve.answer.topic.overview import STEPS, Topics
 from kb_serve.answer.ways.made_things import made_with
 from kb_serve.errors import BadQuery
@@ -26,7 +27,7 @@ from kb_serve.rank.ranked_id import RankedId
 from kb_serve.recognise.several import parts_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
     from kb_serve.answer.docs_answer import DocsAnswer
     from kb_serve.answer.facts.asked_values import AskedOf
@@ -35,25 +36,12 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.several import QuestionPart
 
-_EXCERPT_TOKENS = 300  # of the best of several candidates
-_SHORT_PAGE = 500  # tokens of one that is shown to its end
-_LEAST_SAID = 30
-# What is said of a call → how else it is said.
-_SAID_OF_A_CALL = {
-    "takes no arguments by place": "`{path}` takes no arguments",
-    "takes its arguments by name only.": "`{path}` takes no properties by place",
-    "is a whole number": "`{path}({name})` takes an int",
-}
-_OF_A_CALL = re.compile(
-    rf"(?:`(?P<name>\w+)` of )?`(?P<path>[\w.]+)` (?P<what>{'|'.join(map(re.escape, _SAID_OF_A_CALL))})"
-)
 _KNOWN_OF = 3  # hits for a description among which what one has to know of them is looked for
 _NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
 _SETTINGS = 2  # of a topic that are hits before its classes
+_LESS = 0.02  # score from one id to the next, where nothing was ranked
 _LONGEST_WORD = 100  # no name of Blender's has as many letters
-_INSTEAD = " Write `"
 _OPERATOR = re.compile(r"bpy\.ops\.\w+\.\w+")
-_NOTHING = re.compile(r"This \w+ has no [\w ]+\.\s*")
 _COMMENT = re.compile(r"(?:^|(?<=\s))#\s[^\n]*\n", re.MULTILINE)  # of code, of which lines are joined
 _DOCSTRING = re.compile(r"(:\s*\n\s*)(?:\"{3}.*?\"{3}|'{3}.*?'{3})", re.DOTALL)
 _LONG_WORD = re.compile(rf"(\w{{{_LONGEST_WORD}}})\w+")
@@ -69,6 +57,7 @@ class AnswerComposer:
         self._ranker = QueryRanker(reader)
         self._renderer = MarkdownRenderer(reader)
         self._lines = HitLines(reader)
+        self._blocks = HitBlocks(reader, self._renderer, self._lines)
         self._topics = Topics(reader)
         self._practice = Practice(reader)
         self._draft = lru_cache(maxsize=16)(self._draft_with_notes)
@@ -98,7 +87,7 @@ class AnswerComposer:
     def _make_draft(self, text: str, limit: int, told: Sequence[str]) -> Draft:
         """The answer to a text of whose code ``told`` is said as well."""
         ranking = self._ranker.rank(text, limit)
-        ranking.notes = [note for note in ranking.notes if not _is_said(note, told)]
+        ranking.notes = [note for note in ranking.notes if not is_said(note, told)]
         is_name = (" " not in text or "[" in text) and self._reader.entry(text)
         topic = "" if is_name else self._topics.find(text)
         if topic:
@@ -123,11 +112,7 @@ class AnswerComposer:
         members = self._asked_members(hits[0], ranking.ranked, asked)
         if ranking.named:
             names = ranking.recognition.arguments.get(hits[0].id, ())
-            given = [*self._renderer.arguments(hits[0].id, names)]
-            sockets = self._renderer.sockets(hits[0].id, text)
-            whole = [*self._whole(hits[0], rows[0], asked_of((), names if given else ()))]
-            whole[1:1] = members
-            blocks = (*given, *sockets, *whole, *self._lines.further(hits[1:], rows[1:]))
+            blocks = self._named(hits, rows, text, names, members)
             return draft_of("page" if hits[0].is_page else "schema", hits, notes, blocks)
         return draft_of("candidates", hits, notes, self._found(hits, rows, asked, members))
 
@@ -157,6 +142,26 @@ class AnswerComposer:
         said = (note for path in _OPERATOR.findall(steps) for note in self._practice.of(path, ""))
         return [*dict.fromkeys(said)]
 
+    def _named(
+        self,
+        hits: Sequence[Hit],
+        rows: Sequence[RankedId],
+        text: str,
+        arguments: Collection[str],
+        members: Iterable[AnswerBlock],
+    ) -> Iterator[AnswerBlock]:
+        """All of what a query names, with its ``arguments`` and members that the query names as well ahead of the
+        others; and a line for what else was found.
+        """
+        given = [*self._renderer.arguments(hits[0].id, arguments)]
+        yield from given
+        yield from self._renderer.sockets(hits[0].id, text)
+        whole = self._blocks.whole(hits[0], rows[0], asked_of((), arguments if given else ()))
+        yield from islice(whole, 1)
+        yield from members
+        yield from whole
+        yield from self._lines.further(hits[1:], rows[1:])
+
     def _found(
         self,
         hits: Sequence[Hit],
@@ -170,7 +175,7 @@ class AnswerComposer:
         found = self._lines.asked(hits[0], asked)
         names = {value.argument for value in found if value.argument}
         told = [*self._renderer.arguments(hits[0].id, names, unless_all_fit=True)]
-        excerpt = self._excerpt(hits[0], rows[0], asked_of(found, names if told else ()))
+        excerpt = self._blocks.excerpt(hits[0], rows[0], asked_of(found, names if told else ()))
         others = [*self._lines.further(hits[1:], rows[1:], asked)]
         yield next(excerpt)
         yield from members
@@ -205,9 +210,7 @@ class AnswerComposer:
             found.append([rows[place] for place in sorted(chosen)])
         # In turns, as each part is one of several answers.
         ids = dict.fromkeys(row.id for rows in zip_longest(*found) for row in rows if row)
-        hits = hits_of(
-            [RankedId(i, 1.0 - 0.02 * n, "part") for n, i in enumerate(list(ids)[:limit])], self._reader
-        )
+        hits = hits_of(_in_given_order([*ids][:limit], "part"), self._reader)
         note = f"The question has {len(parts)} parts, each answered in brief. Ask one alone for all of its answer."
         return draft_of(
             "candidates", hits, (note, *ranking.notes, *self._source_notes(ranking, hits)), blocks
@@ -229,49 +232,19 @@ class AnswerComposer:
             without = " and the ".join(missing)
             yield f"This base was built without the {without}; `simworlds kb info {minor}` says why."
 
-    # The text
-
-    def _whole(self, hit: Hit, row: RankedId, asked: AskedOf = ASKED_NOTHING) -> Iterator[AnswerBlock]:
-        if self._reader.is_page(hit.id):
-            yield from page_blocks(hit.id, self._reader, row.anchor)
-        elif symbol := self._reader.symbol(hit.id):
-            yield from self._renderer.symbol(symbol, asked)
-
-    def _excerpt(self, hit: Hit, row: RankedId, asked: AskedOf = ASKED_NOTHING) -> Iterator[AnswerBlock]:
-        """The beginning of the best hit: its description, or the heading and the section that matches, the members
-        that do, and as much more as is short; a short page to its end. Sections that only say in which panel something
-        is are not counted, nor are the names that stand with labels: they must not take the place of what was asked.
-        """
-        blocks = self._whole(hit, row, asked)
-        is_short = False
-        if hit.is_page:
-            blocks = [block for block in blocks if not _says_nothing(block.text)]
-            is_short = sum(tokens(block.plain or block.text) for block in blocks) <= _SHORT_PAGE
-        said = 0
-        for number, block in enumerate(blocks):
-            size = tokens(block.plain or block.text)
-            if number > 1 and said + size > _EXCERPT_TOKENS and said > _LEAST_SAID and not is_short:
-                return
-            said += size if number and not _is_box(block.text) else 0
-            yield block
-            if number == 0 and row.members:
-                yield AnswerBlock(
-                    "**Nearest**\n" + "\n".join(self._lines.members(hit.id, row.members)), "nearest members"
-                )
-
     def _overview(self, topic: str, ranking: Ranking, limit: int) -> Draft:
         overview = self._topics.overview(topic)
         lead = overview.settings[:_SETTINGS]
         ids = dict.fromkeys((topic, *lead, *overview.members, *(row.id for row in ranking.ranked)))
-        hits = hits_of(
-            [RankedId(i, 1.0 - 0.02 * n, "topic") for n, i in enumerate(list(ids)[:limit])], self._reader
-        )
+        hits = hits_of(_in_given_order([*ids][:limit], "topic"), self._reader)
         notes = (*self._source_notes(ranking, hits), *self._on_steps(overview))
         if not overview.is_single:
             return draft_of("page", hits, notes, overview.blocks)
         told = "".join(block.text for block in overview.first)
         rows = [row for row in self._listed(ranking, limit) if row.id != topic and not _is_told(row.id, told)]
-        page = () if overview.says_how else [*self._excerpt(hits[0], RankedId(topic, 1.0, "topic"))][1:]
+        page = (
+            () if overview.says_how else [*self._blocks.excerpt(hits[0], RankedId(topic, 1.0, "topic"))][1:]
+        )
         blocks = (
             *overview.first,
             *page,
@@ -281,6 +254,11 @@ class AnswerComposer:
         return draft_of("page", hits, notes, blocks)
 
 
+def _in_given_order(ids: Iterable[str], why: Literal["part", "topic"]) -> list[RankedId]:
+    """Ids that no search has ranked, with scores that fall from one to the next."""
+    return [RankedId(identifier, 1.0 - _LESS * place, why) for place, identifier in enumerate(ids)]
+
+
 def _in_one_line(query: str) -> str:
     """A query without what no base holds: docstrings and comments of code, lone surrogates, endless words."""
     text = _COMMENT.sub("", _DOCSTRING.sub(r"\1", query)).strip() or query
@@ -288,29 +266,7 @@ def _in_one_line(query: str) -> str:
     return _LONG_WORD.sub(r"\1", text)
 
 
-def _is_said(note: str, told: Sequence[str]) -> bool:
-    """Whether other notes say what a note does, and what to write as well as it does."""
-    what, mark, how = note.partition(" by name only")
-    same = [other for other in told if mark and f"{what}{mark}" in other]
-    if any(_INSTEAD in other or "=" not in how for other in same):
-        return True
-    found = _OF_A_CALL.match(note)
-    in_other_words = _SAID_OF_A_CALL[found["what"]].format(**found.groupdict()) if found else ""
-    return bool(in_other_words) and any(in_other_words in other for other in told)
-
-
 def _is_told(path: str, text: str) -> bool:
     """Whether a text has a name: the path, or its last part as code and its owner."""
     owner, _, name = path.removeprefix(TYPES).rpartition(".")
     return path in text or (bool(owner) and f"`{name}`" in text and f"`{owner}`" in text)
-
-
-def _says_nothing(text: str) -> bool:
-    """Whether a section only says that there is nothing to say: a node without inputs."""
-    return _NOTHING.fullmatch(text.partition("\n\n")[2]) is not None
-
-
-def _is_box(text: str) -> bool:
-    """Whether a section holds nothing below its heading but a box, as the one that names its panel."""
-    body = text.partition("\n\n")[2]
-    return all(line.startswith(">") for line in body.split("\n") if line)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_serve.answer.budget import AnswerBlock, clip, cut, names_of, shown, tokens
 from kb_serve.answer.docs_answer import DocsAnswer
 from kb_serve.answer.next_call import next_call
+from kb_serve.answer.said_twice import not_said
 from kb_serve.errors import BadQuery
-from kb_serve.recognise.code.wrong_values import NO_VALUE
 from simworlds.counting import counted
 from simworlds.schemas.value_class import value_class
 
@@ -24,7 +23,6 @@ if TYPE_CHECKING:
 _FOOTER_TOKENS = 70
 _REST = "the rest of the last line, "
 _NOTES_TOKENS = 500
-_NO_VALUE = re.compile(rf"'([^'\n]+)'`?{NO_VALUE}")
 
 
 @value_class
@@ -46,12 +44,7 @@ def draft_of(
 
 def with_notes(notes: Sequence[str], draft: Draft) -> Draft:
     """A draft with further notes, above its own, unless these say the same, or that the same value is none."""
-    told = {value for own in draft.notes for value in _NO_VALUE.findall(own)}
-    news = [
-        note
-        for note in notes
-        if not any(own in note for own in draft.notes) and told.isdisjoint(_NO_VALUE.findall(note))
-    ]
+    news = not_said(notes, draft.notes)
     if not news:
         return draft
     return replace(draft, notes=(*news, *draft.notes), parts=(*cut(_above(news)), *draft.parts))
