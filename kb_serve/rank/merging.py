@@ -212,7 +212,7 @@ class QueryRanker:
         page = self._reader.page(row.id) if is_whole else None
         if page is None or len(page.sections) == 1:
             return row
-        return row._replace(anchor=asked_section(page, self.searcher.concepts(prose)))
+        return row._replace(anchor=asked_section(page, self.searcher.words.concepts(prose)))
 
     @staticmethod
     def _merged(recognition: Recognition, hits: list[SearchHit]) -> list[RankedId]:
