@@ -9,11 +9,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import STOP_WORDS, stems_of, words
-from kb_serve.rank.asked_sockets import AskedSockets
 from kb_serve.rank.asked_words import SCRIPT_WORDS
 from kb_serve.rank.deprecated import replacement
 from kb_serve.rank.meant_names import MeantNames
-from kb_serve.rank.named_nodes import named_nodes
+from kb_serve.rank.nodes.asked_sockets import AskedSockets
+from kb_serve.rank.nodes.named_nodes import named_nodes
 from kb_serve.rank.opposites import opposites_last
 from kb_serve.rank.ranked_id import RankedId
 from kb_serve.rank.sections import asked_section

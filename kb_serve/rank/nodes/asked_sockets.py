@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import STOP_WORDS, key
 from kb_build.symbols.paths import plain_path
-from kb_serve.rank.named_nodes import nodes_by_label, words_said
+from kb_serve.rank.nodes.named_nodes import nodes_by_label, words_said
 from kb_serve.recognise.names.by_words.members_by_words import SIDES, sockets_by_words
 from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kb_serve.rank.named_nodes import NamedNode
+    from kb_serve.rank.nodes.named_nodes import NamedNode
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
 

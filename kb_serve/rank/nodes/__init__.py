@@ -1,0 +1,1 @@
+"""Which nodes and sockets a question calls by their labels."""
