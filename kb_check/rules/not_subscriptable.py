@@ -55,8 +55,8 @@ from kb_check.script import once_per_script
 from kb_check.syntax.annotated import ONE_IS_WRONG, annotated
 from kb_check.syntax.bindings import bindings
 from kb_check.syntax.literals import number
-from kb_check.values.conversions import CHANGING_ARRAYS
 from kb_check.values.documented import LENGTHS
+from kb_check.values.lengths import CHANGING_ARRAYS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -124,7 +124,7 @@ def _is_guarded(script: Script, node: ast.Subscript) -> bool:
     """Whether the script is ready for a refusal, or the type of the owner is a guess."""
     for part in walk(node):
         row = script.analysis.resolutions.get(part)
-        if row is not None and (row.guarded or not row.sure or (row.possible and not row.symbols)):
+        if row is not None and (row.guarded or not row.sure):
             return True
     return False
 

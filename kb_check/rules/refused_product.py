@@ -14,7 +14,8 @@ ob.rotation_euler.z += 0.5
 [ob.matrix_world @ Vector(corner) for corner in ob.bound_box]
 ```
 
-So is what is computed with None: `matrix.invert() @ vector`, for `matrix.inverted()`.
+So is what is computed with None: `matrix.invert() @ vector`, for `matrix.inverted()`; and `sum(v.co for v in verts)`,
+which begins with the number 0.
 
 A vector is added to a vector only, and divided by a number only.
 
@@ -34,7 +35,8 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.blender.facts import PRODUCTS
-from kb_build.flow.values.types import Instance
+from kb_build.flow.values.types import Builtin, Instance, Sequence, Tuple
+from kb_build.symbols.paths import last_name
 from kb_check.calls.sites import nothing_from, other_way
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.rule import Rule
@@ -53,6 +55,7 @@ _OF_EULER = (
     "An Euler is not computed with: change one of its angles (`euler.z += 0.5`), turn it by `euler.rotate(…)`, or "
     "take `euler.to_matrix()`."
 )
+_ADDED = frozenset({"mathutils.Color", "mathutils.Vector"})
 _TRANSFORMS = frozenset({"mathutils.Matrix", "mathutils.Quaternion"})
 
 
@@ -70,6 +73,7 @@ def _check(script: Script) -> Iterator[Finding]:
         )  # fmt: skip
     yield from _by_item(script)
     yield from _with_nothing(script)
+    yield from _sums(script)
 
 
 def _advice(sign: str, left: str, right: str, *, in_place: bool) -> str:
@@ -101,6 +105,37 @@ def _with_nothing(script: Script) -> Iterator[Finding]:
                     RULE.id, "error", script.span(side),
                     f"`{function}` returns nothing to compute with.{other_way(script, function)}", function,
                 )  # fmt: skip
+
+
+def _sums(script: Script) -> Iterator[Finding]:
+    """``sum`` of vectors, which begins with the number 0 unless it is told otherwise."""
+    for call in script.all(ast.Call):
+        match call:
+            case ast.Call(func=ast.Name(id="sum") as callee, args=[added], keywords=[]) if script.type_of(
+                callee
+            ) == Builtin("sum"):
+                cls = _summed(script, added)
+            case _:
+                continue
+        if cls and not is_tried(script, call):
+            start = f"{last_name(cls)}()"
+            yield Finding(
+                RULE.id, "error", script.span(call),
+                f"`sum` begins with the number 0, to which no `{cls}` is added: give it a start, "
+                f"`sum(…, {start})`.", cls,
+            )  # fmt: skip
+
+
+def _summed(script: Script, added: ast.expr) -> str:
+    """The class of mathutils of everything that a value holds; empty for anything else."""
+    match script.type_of(added):
+        case Sequence(element=Instance(cls=cls, sure=True)) if cls in _ADDED:
+            return cls
+        case Tuple(items=items) if items:
+            classes = {item.cls if isinstance(item, Instance) and item.sure else "" for item in items}
+            return next((cls for cls in classes if len(classes) == 1 and cls in _ADDED), "")
+        case _:
+            return ""
 
 
 def _by_item(script: Script) -> Iterator[Finding]:

@@ -6,9 +6,13 @@ rotation.to_matrix().to_4x4() @ Matrix.Translation(offset)
 uv.co - vertex.co  # reported: 2 and 3 components
 Vector((1, 2, 3)).w  # reported
 x, y = ob.location  # reported: 3 components
+red, green, blue = ob.color  # reported: 4 numbers
+ob.location[:] = (1, 2)  # reported: 3 numbers
+ob.location.xy = (1, 2, 3)  # reported: 2 numbers
 Matrix.Identity(5)  # reported: 2 to 4
 mesh.vertices.foreach_get("co", np.zeros(len(mesh.vertices)))  # reported: 3 numbers for each
 mesh.vertices.foreach_set("co", [(0, 0, 0), (1, 0, 0)])  # reported: it takes one row of numbers
+fcurve.keyframe_points.foreach_set("interpolation", ["LINEAR"] * count)  # reported: it takes no texts
 ```
 
 Not reported: sizes that are not written in the script or told by the API, scripts that resize any, and what stands in a
@@ -26,7 +30,8 @@ from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
 from kb_check.running.tried import is_tried
 from kb_check.syntax.literals import number
-from kb_check.values.buffers import buffer_of_rows, short_buffer
+from kb_check.values.buffers import buffer_of_rows, buffer_of_texts, short_buffer
+from kb_check.values.lengths import length_of, sliced
 from kb_check.values.mathutils_sizes import (
     MATRIX,
     QUATERNION,
@@ -74,6 +79,8 @@ def _check(script: Script) -> Iterator[Finding]:
                 told = _item(script, node)
             case ast.Assign(targets=[ast.Tuple(elts=names) | ast.List(elts=names)]):
                 told = _unpacked(script, node.value, names)
+            case ast.Assign(targets=[ast.Subscript() | ast.Attribute() as part]):
+                told = _part_set(script, part, node.value)
             case _:
                 continue
         if told and not is_tried(script, node):
@@ -156,6 +163,10 @@ def _call(script: Script, call: ast.Call) -> Finding | None:
 def _buffer(script: Script, call: ast.Call) -> Finding | None:
     if rows := buffer_of_rows(script, call):
         return _of_rows(script, call, rows)
+    if (texts := buffer_of_texts(script, call)) is not None:
+        path = callee_path(script, call)
+        told = f"`{path}` takes numbers, no texts: an enumeration is set on each item, or by the numbers of its values."
+        return _finding(script, texts, told, path)
     if (short := short_buffer(script, call)) is None:
         return None
     rows = ", of which the rows count: `.ravel()` makes one row" if short.has_rows else ""
@@ -194,12 +205,36 @@ def _item(script: Script, node: ast.Subscript) -> Finding | None:
 
 
 def _unpacked(script: Script, value: ast.expr, names: list[ast.expr]) -> Finding | None:
-    size = size_of(script, value)
-    if not size or len(names) == size[0] or any(isinstance(name, ast.Starred) for name in names):
+    length = length_of(script, value)
+    if length is None or len(names) == length or any(isinstance(name, ast.Starred) for name in names):
         return None
-    return _finding(
-        script, value, f"{in_words(size).capitalize()} cannot be unpacked into {len(names)} names."
-    )
+    size = size_of(script, value)
+    told = in_words(size).capitalize() if size else f"A row of {length}"
+    return _finding(script, value, f"{told} cannot be unpacked into {len(names)} names.")
+
+
+def _part_set(script: Script, part: ast.Subscript | ast.Attribute, value: ast.expr) -> Finding | None:
+    """What is wrong with setting several components of a vector, or a row of a matrix, at once."""
+    whole, cls = part.value, script.class_of(part.value)
+    wanted = None
+    takes_more = False
+    match part:
+        case ast.Subscript(slice=ast.Slice() as bounds):
+            length = length_of(script, whole) if cls else None
+            wanted = None if length is None else sliced(script, bounds, length)
+            takes_more = cls == VECTOR  # and leaves what is too much
+        case ast.Subscript() if cls == MATRIX:
+            wanted = length_of(script, part)
+        case ast.Attribute(attr=name) if cls == VECTOR and len(name) > 1 and set(name) <= set(_AXES):
+            wanted = len(name)
+        case _:
+            pass
+    if wanted is None:
+        return None
+    given = length_of(script, value)
+    if given is None or given == wanted or (takes_more and given > wanted):
+        return None
+    return _finding(script, value, f"`{ast.unparse(part)}` takes {wanted} numbers, not {given}.")
 
 
 def _finding(

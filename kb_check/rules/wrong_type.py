@@ -6,6 +6,9 @@ pointer, and a colour has as many parts as its property says.
 
 ```python
 scene.frame_end = 250.0  # reported
+scene.frame_start, scene.frame_end = action.frame_range  # reported: floats
+scene.render.resolution_x /= 2  # reported: a float
+range(ob.location.x)  # reported: a float
 material.diffuse_color = (1, 0, 0)  # reported: 4 floats
 scene.camera = bpy.data.cameras.new("Camera")  # reported: an Object that has it
 scene.render.filepath = pathlib.Path("/tmp/x.png")  # reported: str(…)
@@ -16,6 +19,7 @@ variable.targets[0].id = scene  # reported: variable.targets[0].id_type = "SCENE
 loop[uv_layer] = (0, 0)  # reported: loop[uv_layer].uv = (0, 0)
 image.pixels.foreach_set(np.ones(count))  # reported: np.ones(count, dtype=np.float32)
 mesh.polygons.foreach_set("use_smooth", np.ones(count))  # reported: np.ones(count, dtype=bool)
+ob["tags"] = {"red", "blue"}  # reported: a list, or a text
 mix = tree.nodes.new("ShaderNodeMix")
 mix.inputs["A"].default_value = (1, 0, 0, 1)  # reported: mix.data_type = "RGBA" comes first
 ```
@@ -56,11 +60,14 @@ from kb_check.syntax.literals import items, set_of
 from kb_check.syntax.words import named_words
 from kb_check.text.brackets import bracketed
 from kb_check.values.buffers import float_buffer, wide_buffer
+from kb_check.values.computed import computed_misfits
 from kb_check.values.conversions import misfit
+from kb_check.values.custom_values import refused_value
 from kb_check.values.documented import layer_misfit
 from kb_check.values.given import assigned, class_values, given_values
 from kb_check.values.mathutils_sizes import MATRIX
 from kb_check.values.misfits import describe
+from kb_check.values.python_ints import floats_for_ints
 from kb_check.values.python_paths import is_path
 from kb_serve.recognise.names.likely.likely_values import item_called
 
@@ -72,12 +79,17 @@ if TYPE_CHECKING:
     from kb_check.values.misfits import Misfit
 
 _COLORS = frozenset({"COLOR", "COLOR_GAMMA"})
-_DATA = tuple(f"{T}{name}" for name in OBJECT_DATA.values())
+# Since 5.0 GreasePencilv3 has the older name.
+_DATA = tuple(f"{T}{name}" for name in (*OBJECT_DATA.values(), "GreasePencil"))
 _LAYER = "bmesh.types.BMLayerItem"
 # How what layers hold as something with members is filled.
 _HELD = {
     "bmesh.types.BMLoopUV": "loop[layer].uv = (u, v)", "bmesh.types.BMDeformVert": "vert[layer][group_index] = weight",
 }  # fmt: skip
+_KEPT = (
+    "keeps a number, a text, bytes, a data-block, a list of one of these kinds, or a dictionary; anything else as a "
+    "text, as `json.dumps(…)` makes it"
+)
 _LONGEST_INT = 2**31
 _RGB = 3  # numbers of a colour without alpha
 _TRANSFORM = (4, 4)
@@ -98,23 +110,36 @@ def _check(script: Script) -> Iterator[Finding]:
             continue
         wrong, taker = found[0], given.takers[0]
         assert wrong is not None
+        advice = _advice(script, taker, wrong, given.node)
         kind = script.type_of(given.node)
         if isinstance(kind, Instance) and (said := annotated(script, given.node, kind.cls)):
             yield Finding(
                 RULE.id, "warning", script.span(given.node),
-                f"{said}, and `{taker.path}`{given.why} takes {wrong.takes}: {ONE_IS_WRONG}."
-                f"{_advice(script, taker, given.node)}", taker.path,
+                f"{said}, and `{taker.path}`{given.why} takes {wrong.takes}: {ONE_IS_WRONG}.{advice}", taker.path,
             )  # fmt: skip
             continue
         yield Finding(
             RULE.id, "error", script.span(given.node),
-            f"`{taker.path}`{given.why} takes {wrong.takes}, not {wrong.given}.{_advice(script, taker, given.node)}",
+            f"`{taker.path}`{given.why} takes {wrong.takes}, not {wrong.given}.{advice}",
             taker.path, (), _fix(script, taker, wrong, given.node) if len(given.takers) == 1 else None,
         )  # fmt: skip
+    yield from _computed(script)
     yield from _items_given(script)
     yield from _other_ids(script)
     yield from _doubles(script)
     yield from _floats(script)
+
+
+def _computed(script: Script) -> Iterator[Finding]:
+    """What is computed for a property, as behind a tuple."""
+    for found in computed_misfits(script):
+        advice = " Make it whole first: `int(…)`, `round(…)`, `//`." if found.taker.kind == "int" else ""
+        path, wrong = found.taker.path, found.wrong
+        told = f"`{path}` takes {wrong.takes}, not {wrong.given}.{advice}"
+        yield Finding(RULE.id, "error", script.span(found.node), told, path)
+    for node, wanting in floats_for_ints(script):
+        told = f"{wanting} an int, not a float: `int(…)`, `round(…)`, or `//` in place of `/`."
+        yield Finding(RULE.id, "error", script.span(node), told)
 
 
 def _doubles(script: Script) -> Iterator[Finding]:
@@ -198,6 +223,10 @@ def _items_given(script: Script) -> Iterator[Finding]:
             told = f"This layer takes {wrong.takes}, not {wrong.given}.{_of_layer(script, wrong)}"
             yield Finding(RULE.id, "error", script.span(node.value), told, _LAYER)
             continue
+        if (refused := refused_value(script, target, node.value)) and not is_tried(script, target):
+            told = f"A custom property takes no {refused.removeprefix('a ').removeprefix('an ')}: it {_KEPT}."
+            yield Finding(RULE.id, "error", script.span(node.value), told, STRUCT)
+            continue
         owner, kind = script.type_of(target.value), script.type_of(node.value)
         row = script.analysis.resolutions.get(target.value)
         certain = row is None or (row.sure and not row.guarded and not row.possible)
@@ -224,8 +253,11 @@ def _element(owner: Collection) -> str:
     return owner.element.cls if isinstance(owner.element, Instance) else STRUCT
 
 
-def _advice(script: Script, taker: Taker, node: ast.expr) -> str:
+def _advice(script: Script, taker: Taker, wrong: Misfit, node: ast.expr) -> str:
     """What may be meant by what stands in the place of something else."""
+    if taker.subtype in _COLORS and (wrong.length, taker.sizes) == (_RGB, (_RGB + 1,)):
+        is_short = isinstance(node, (ast.Name, ast.Attribute, ast.Call, ast.Subscript))
+        return f" With alpha: `(*{ast.unparse(node)}, 1.0)`." if is_short else ""
     if taker.path == _KEYED_PATH and isinstance(node, ast.Attribute):
         return f" Give the name: `{node.attr!r}`."
     if taker.sizes == _TRANSFORM and script.class_of(node) == MATRIX:
@@ -236,7 +268,8 @@ def _advice(script: Script, taker: Taker, node: ast.expr) -> str:
 
 def _of_another_class(script: Script, taker: Taker, kind: Instance) -> str:
     """What may be meant where an object's data, or a node, stand in the place of the object or of a socket."""
-    if taker.target == OBJECT and any(script.api.descends(kind.cls, cls) for cls in (*_DATA, ID)):
+    is_data = kind.cls == ID or any(script.api.descends(kind.cls, cls) for cls in _DATA)
+    if taker.target == OBJECT and is_data:
         return " Give the object that has it: `bpy.data.objects.new(name, data)` makes one."
     if kind.cls == OBJECT and (taker.target or taker.documented) in _DATA:
         return " Give its data: `.data`."

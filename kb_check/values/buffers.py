@@ -8,6 +8,7 @@ count = len(mesh.vertices)
 mesh.vertices.foreach_get("co", np.zeros(count))  # 3 numbers each
 mesh.vertices.foreach_get("co", np.zeros((count, 3)))  # only the rows count
 mesh.vertices.foreach_set("co", [vertex.co for vertex in vertices])  # vectors in place of numbers
+points.foreach_set("interpolation", ["LINEAR"] * count)  # texts in place of numbers
 ```
 """
 
@@ -19,7 +20,17 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.blender.api import ARRAY
 from kb_build.flow.blender.facts import ELEMENT
-from kb_build.flow.values.types import FLOAT, Collection, Instance, Plain, Sequence, Tuple, Union, members
+from kb_build.flow.values.types import (
+    FLOAT,
+    UNKNOWN,
+    Collection,
+    Instance,
+    Plain,
+    Sequence,
+    Tuple,
+    Union,
+    members,
+)
 from kb_build.symbols.api_names import COLLECTION
 from kb_check.calls.resolved import callee_path
 from kb_check.syntax.bindings import once_bound
@@ -151,6 +162,28 @@ def buffer_of_rows(script: Script, call: ast.Call) -> Rows | None:
     made = once_bound(script, buffer)
     has_rows = wanted > 1 and isinstance(made, ast.Call) and _makes_rows(script, made, wanted)
     return Rows(buffer, is_array=True) if has_rows and _stays(script, items, buffer) else None
+
+
+def buffer_of_texts(script: Script, call: ast.Call) -> ast.expr | None:
+    """The buffer that a call is given, if it surely holds texts in place of numbers."""
+    match call:
+        case ast.Call(func=ast.Attribute(attr=name), args=[_, buffer], keywords=[]) if (
+            name in _FUNCTIONS and callee_path(script, call) in _OF_ITEMS
+        ):
+            return buffer if all(map(_holds_texts, members(script.type_of(buffer) or UNKNOWN))) else None
+        case _:
+            return None
+
+
+def _holds_texts(kind: Type) -> bool:
+    match kind:
+        case Sequence(kind="list" | "tuple", element=element):
+            items = members(element)
+        case Tuple(items=items):
+            pass
+        case _:
+            return False
+    return bool(items) and all(isinstance(item, Plain) and item.kind == "str" for item in items)
 
 
 def _makes_rows(script: Script, call: ast.Call, wanted: int) -> bool:

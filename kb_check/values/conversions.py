@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.blender.facts import OF_OBJECT
 from kb_build.flow.values.types import (
     NONE,
+    UNKNOWN,
     Collection,
     Instance,
     Mapping,
@@ -45,6 +46,7 @@ from kb_check.values.documented import (
     lengths,
     none_misfit,
 )
+from kb_check.values.lengths import CHANGING_ARRAYS, is_iterator, length_of
 from kb_check.values.mathutils_sizes import in_words, size_of
 from kb_check.values.misfits import Misfit, describe, shown
 
@@ -70,11 +72,11 @@ _WORDS = {
 }  # fmt: skip
 _BYTES = "BYTE_STRING"
 _ITEM_WORDS = {"boolean": "bool", "int": "int", "float": "float"}
-# Arrays whose size is not the one that RNA declares.
-CHANGING_ARRAYS = frozenset({"bpy.types.FModifierGenerator.coefficients", "bpy.types.MeshPolygon.vertices"})
 
 
-def misfit(script: Script, taker: Taker, node: ast.expr) -> Misfit | None:
+def misfit(  # noqa: PLR0911 - one return a reason
+    script: Script, taker: Taker, node: ast.expr
+) -> Misfit | None:
     """Why a property or parameter surely refuses a value; None where it takes it, or may."""
     if taker.sizes:
         return _array_misfit(script, taker, node, taker.sizes)
@@ -83,6 +85,8 @@ def misfit(script: Script, taker: Taker, node: ast.expr) -> Misfit | None:
     kind = script.type_of(node)
     if kind is None:
         return None
+    if taker.kind == "int" and kind is UNKNOWN and _is_quotient(script, node):
+        return Misfit(_takes(taker), "a float")
     if isinstance(written(script, node), ast.Constant) and kind == NONE:
         if not taker.kind:
             return none_misfit(script, taker)
@@ -90,6 +94,32 @@ def misfit(script: Script, taker: Taker, node: ast.expr) -> Misfit | None:
         return None if may_be_none else Misfit(_takes(taker), "None")
     found = [_scalar_misfit(script, taker, node, member) for member in members(kind)]
     return found[0] if all(found) else None
+
+
+def _is_quotient(script: Script, node: ast.expr) -> bool:
+    """Whether a value is divided by a number, or divides one: no number that Python has gives an int so."""
+    match node:
+        case ast.BinOp(op=ast.Div(), left=left, right=right):
+            return number(script, left) is not None or number(script, right) is not None
+        case _:
+            return False
+
+
+def kind_misfit(taker: Taker, kind: Type) -> Misfit | None:
+    """Why a property surely refuses a value of which nothing but its type is known."""
+    if taker.sizes or not taker.kind:
+        return None
+    found = [_of_type(taker, member) for member in members(kind)]
+    return found[0] if found and all(found) else None
+
+
+def _of_type(taker: Taker, kind: Type) -> Misfit | None:
+    if not isinstance(kind, Plain) or taker.kind == "pointer" or not describe(kind):
+        return None
+    if taker.kind == "set":
+        return Misfit(_takes(taker), describe(kind))
+    takes = _TAKES[taker.kind] if taker.subtype != _BYTES else {"bytes"}
+    return None if kind.kind in takes else Misfit(_takes(taker), describe(kind))
 
 
 def _scalar_misfit(  # noqa: PLR0911 - one return a type
@@ -156,7 +186,9 @@ def _data_misfit(script: Script, taker: Taker, kind: Instance, classes: tuple[st
     return None if is_data else Misfit("the data of an object", describe(kind))
 
 
-def _array_misfit(script: Script, taker: Taker, node: ast.expr, sizes: tuple[int, ...]) -> Misfit | None:
+def _array_misfit(  # noqa: PLR0911 - one return a reason
+    script: Script, taker: Taker, node: ast.expr, sizes: tuple[int, ...]
+) -> Misfit | None:
     changing = not all(sizes) or taker.path in CHANGING_ARRAYS
     many = "a sequence of" if changing else " × ".join(map(str, sizes))
     takes = f"{many} {_ITEM_WORDS.get(taker.kind, taker.kind)}s"
@@ -169,12 +201,22 @@ def _array_misfit(script: Script, taker: Taker, node: ast.expr, sizes: tuple[int
         return next((found for part in parts if (found := _item_misfit(script, taker, part, takes))), None)
     if not changing and (size := size_of(script, node)) and size != sizes:
         return Misfit(takes, in_words(size), size[0])
+    length = length_of(script, node)
+    if not changing and length is not None and length != sizes[0] and not _has_own_words(script, node):
+        return Misfit(takes, f"{length} items", length)
+    if is_iterator(script, node):
+        return Misfit(takes, "an iterator, which has no length")
     kind = script.type_of(node)
     if kind is None:
         return None
     length = 0 if changing else sizes[0] if len(sizes) == 1 else -1
     found = [_whole_misfit(script, node, member, length, takes) for member in members(kind)]
     return found[0] if all(found) else None
+
+
+def _has_own_words(script: Script, node: ast.expr) -> bool:
+    """Whether more is told of a value than how many items it has: of which class it is."""
+    return script.class_of(node) in LENGTHS
 
 
 def _item_misfit(script: Script, taker: Taker, node: ast.expr, takes: str) -> Misfit | None:

@@ -18,7 +18,7 @@ from kb_build.symbols.unlisted import SOMETIMES
 from kb_check.calls.sites import calls
 from kb_check.scene.made_here import is_new
 from kb_check.script import once_per_script
-from kb_check.values.conversions import CHANGING_ARRAYS
+from kb_check.values.lengths import CHANGING_ARRAYS
 
 if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol

@@ -106,6 +106,8 @@ def documented_misfit(script: Script, taker: Taker, node: ast.expr, kind: Type) 
 
 def none_misfit(script: Script, taker: Taker) -> Misfit | None:
     """Why None is refused, of what is no RNA; None where it may be taken."""
+    if taker.path.startswith(_MATHUTILS) and not taker.is_parameter and taker.documented == "float":
+        return Misfit("a number", "None")
     classes, is_many = _classes(script, taker)
     if not taker.path.startswith(_BMESH_OPERATORS) or not classes:
         return None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 
+from kb_build.flow.blender.api import ARRAY
 from kb_build.flow.blender.facts import AREA, AREA_TYPES, DISCRIMINANTS, SPACE
 from kb_build.flow.evaluation.annotations import Annotations
 from kb_build.flow.evaluation.expressions import is_math
@@ -198,7 +199,9 @@ class Assignments(Guards, Annotations):
             self.check_value(found.type, value)
         elif found.possible and found.sure and not found.missing and value is not None:
             self.check_possible(owner, target.attr, found.possible, value)
-        converts = is_math(kind) and is_math(found.type)  # a vector, given to a colour, becomes a colour
+        # A vector, given to a colour, becomes a colour; an array takes the numbers in.
+        is_row = is_math(found.type) or (isinstance(found.type, Instance) and found.type.cls == ARRAY)
+        converts = is_math(kind) and is_row
         holds = (
             isinstance(kind, (Instance, LocalInstance)) and isinstance(found.type, Instance) and not converts
         )

@@ -1,0 +1,67 @@
+"""Floats where Python itself wants a whole number: in ``range``, as an index, as how often a text is repeated."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_build.flow.values.types import UNKNOWN, Builtin, Plain, Sequence, Tuple, members
+from kb_check.running.tried import is_tried
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_build.flow.values.types import Type
+    from kb_check.script import Script
+
+_REFUSES = ("TypeError",)
+
+
+def floats_for_ints(script: Script) -> Iterator[tuple[ast.expr, str]]:
+    """What surely is a float, and what wants an int in its place, in words."""
+    for node, wanting in (*_of_ranges(script), *_indices(script), *_repeated(script)):
+        if _kinds(script, node) == {"float"} and not is_tried(script, node, _REFUSES):
+            yield node, wanting
+
+
+def _of_ranges(script: Script) -> Iterator[tuple[ast.expr, str]]:
+    for call in script.all(ast.Call):
+        match call:
+            case ast.Call(func=ast.Name(id="range") as callee, args=bounds) if script.type_of(
+                callee
+            ) == Builtin("range"):
+                yield from ((bound, "`range` takes") for bound in bounds)
+            case _:
+                pass
+
+
+def _indices(script: Script) -> Iterator[tuple[ast.expr, str]]:
+    for node in script.all(ast.Subscript):
+        if not _is_list(script.type_of(node.value)):
+            continue
+        part = node.slice
+        bounds = (part.lower, part.upper, part.step) if isinstance(part, ast.Slice) else (part,)
+        yield from ((bound, "The index of a list is") for bound in bounds if bound is not None)
+
+
+def _repeated(script: Script) -> Iterator[tuple[ast.expr, str]]:
+    for node in script.all(ast.BinOp):
+        if not isinstance(node.op, ast.Mult):
+            continue
+        for one, other in ((node.left, node.right), (node.right, node.left)):
+            if _kinds(script, one) == {"str"} or _is_list(script.type_of(one)):
+                yield other, "How often something is repeated is"
+
+
+def _is_list(kind: Type | None) -> bool:
+    """Whether a value surely is a list or a tuple of Python's."""
+    return all(
+        isinstance(one, Tuple) or (isinstance(one, Sequence) and one.kind == "list")
+        for one in members(kind or UNKNOWN)
+    )
+
+
+def _kinds(script: Script, node: ast.expr) -> set[str]:
+    """The kinds of plain values that an expression can be, ``""`` for anything else."""
+    kinds = members(script.type_of(node) or UNKNOWN)
+    return {kind.kind if isinstance(kind, Plain) else "" for kind in kinds}
