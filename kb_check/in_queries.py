@@ -19,13 +19,14 @@ from kb_check.text.source import split_lines
 from kb_check.whole_fixes import with_whole_fixes
 from kb_serve.reader import UNLIMITED
 from kb_serve.recognise.code.wrong_values import NO_VALUE
+from kb_serve.recognise.message_patterns import members_named
 from kb_serve.recognise.names.likely.corrections import is_misspelling
 from kb_serve.recognise.removed.lost_names import is_telling
 from kb_serve.recognise.resolving.chains import MOST_CODE, find_chains
 from kb_serve.recognise.resolving.variables import is_guess, usual_classes
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from kb_check.checker import Checker
     from kb_check.findings import Finding
@@ -81,7 +82,7 @@ def notes_on_code(reader: BaseReader, query: str) -> tuple[str, ...]:
         return ()
     code, tree = asked
     checker = checker_beside(reader)
-    code = f"{_bindings(tree, checker)}\n{code}"
+    code = f"{_bindings(tree, checker, dict(_owners_named(query, reader)))}\n{code}"
     lines = split_lines(code)
     is_long = sum(chain.is_code for chain in find_chains(query)) >= MOST_CODE
     try:
@@ -126,8 +127,18 @@ def _with_body(code: str) -> str:
     return f"{code} ..." if code.endswith(":") else code
 
 
-def _bindings(tree: ast.Module, checker: Checker) -> str:
-    """A line that imports what a piece of code uses of modules, and says what its variables hold."""
+def _owners_named(query: str, reader: BaseReader) -> Iterator[tuple[str, str]]:
+    """(member, the class that has it) of each that a message in a query names."""
+    for cls, name in members_named(query):
+        entry = reader.entry(TYPES + cls)
+        if entry is not None and entry.kind == "class" and entry.group == "data":
+            yield name, entry.path
+
+
+def _bindings(tree: ast.Module, checker: Checker, owners: Mapping[str, str]) -> str:
+    """A line that imports what a piece of code uses of modules, and says what its variables hold. ``owners`` has the
+    classes of what has members of some names, as a message tells them.
+    """
     bound: set[str] = set()
     read: dict[str, None] = {}
     attributes: dict[str, set[str]] = {}
@@ -147,13 +158,18 @@ def _bindings(tree: ast.Module, checker: Checker) -> str:
                 pass
     free = [name for name in read if name not in bound and not hasattr(builtins, name)]
     return "; ".join(
-        ("import bpy", *filter(None, (_binding(name, attributes.get(name, ()), checker) for name in free)))
+        (
+            "import bpy",
+            *filter(None, (_binding(name, attributes.get(name, ()), checker, owners) for name in free)),
+        )
     )
 
 
-def _binding(name: str, attributes: Collection[str], checker: Checker) -> str:
-    """A line that says what a name stands for of which some attributes are read; empty where that is not known."""
+def _binding(name: str, attributes: Collection[str], checker: Checker, owners: Mapping[str, str]) -> str:
+    """A line that says what a name stands for of which some attributes are used; empty where that is not known."""
     known = checker.names.reader.entry
+    if told := {owners[attribute] for attribute in attributes if attribute in owners}:
+        return f"{name}: {' | '.join(sorted(told))}"
     if (entry := known(name)) is not None and entry.kind == "module":
         return f"import {name}"
     for module in _IMPORTED:

@@ -13,6 +13,7 @@ from kb_check.names.likely import by_label
 from kb_serve.rank.meant_members import meant_members
 from kb_serve.recognise.names.by_words.operator_words import OperatorWords, same_operator_words
 from kb_serve.recognise.names.by_words.set_elsewhere import set_elsewhere
+from kb_serve.recognise.names.elsewhere.layers import former_layer
 from kb_serve.recognise.names.likely.corrections import by_first_word, is_misspelling, nearest, shortened
 from kb_serve.recognise.names.likely.likely_keywords import likely_parameters
 from kb_serve.recognise.names.likely.node_names import is_like_a_node, nodes_meant
@@ -129,6 +130,13 @@ class KnownNames:
         removed = removed or self._lookup.below(owner, name)
         if removed:
             return self._removed(for_reading(removed) if reading else removed)
+        layer = former_layer(owner, name)
+        if layer and (removed := self._lookup.of_path(layer)):
+            lacking = self._removed(removed)
+            told = (
+                f"`{owner}` has no `{name}` in Blender {self.version}: it was in a layer. {lacking.message}"
+            )
+            return Lacking(f"{owner}.{name}", told, lacking.instead)
         return self._never(owner, name, assigned=not reading)
 
     def path(self, path: str) -> Lacking | None:

@@ -53,6 +53,7 @@ from kb_check.script import once_per_script
 from kb_check.syntax.bindings import alias, bindings
 from kb_check.syntax.named_before import is_named_only_behind
 from kb_check.syntax.words import named_words
+from kb_serve.recognise.names.likely.likely_values import same_elsewhere
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -211,11 +212,25 @@ def _refused_by_setting(
     name = setting.symbol.name
     if before := set_before(script, statement, target.value, setting.symbol):
         if isinstance(before, ast.Constant) and setting.refuses(before.value):
-            yield _finding(script, statement.value, item, setting.of, f"`{name}` is {before.value!r} here")
+            found = _finding(script, statement.value, item, setting.of, f"`{name}` is {before.value!r} here")
+            others = _taken_with(script, setting, item, before.value)
+            yield replace(found, message=f"{found.message}{others}")
     elif told := _as_it_is_new(script, statement, target, setting):
         why, severity = told
         found = replace(_finding(script, statement.value, item, setting.of, why), severity=severity)
         yield _set_first(script, statement, target, setting, found)
+
+
+def _taken_with(script: Script, setting: _Setting, item: EnumItem, value: object) -> str:
+    """A sentence on the items of the same name that are taken with what a setting is; empty for none."""
+    symbol = script.api.symbols.symbol(setting.of)
+    items = {one.identifier: one for one in symbol.enum_items} if symbol else {}
+    found = [
+        other
+        for other in same_elsewhere(item.identifier, items)
+        if symbol and (condition := _setting(script, symbol, items[other])) and not condition.refuses(value)
+    ]
+    return f" Write {' or '.join(map(repr, found))}." if found else ""
 
 
 def _as_it_is_new(

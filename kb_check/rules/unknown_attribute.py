@@ -46,6 +46,7 @@ from kb_check.syntax.bindings import bindings
 from kb_check.syntax.words import words_in_texts
 from kb_serve.recognise.names.elsewhere.elements import Elsewhere, elsewhere
 from kb_serve.recognise.names.elsewhere.holders import by_what_holds_it, of_collection
+from kb_serve.recognise.names.elsewhere.meant_elsewhere import meant_elsewhere
 from kb_serve.recognise.names.elsewhere.members_within import members_within
 
 if TYPE_CHECKING:
@@ -91,6 +92,8 @@ def _elsewhere(script: Script, row: Resolution, owner: str, lacking: Lacking) ->
         return [other]
     if lacking.replacement:
         return []
+    if meant := meant_elsewhere(owner, row.value, reader):
+        return [Elsewhere(meant.path, meant.how)]
     found: list[Elsewhere] = []
     if row.kind == "attribute":
         found = of_collection(row.missing[0], row.value, reader) or by_what_holds_it(owner, row.value, reader)

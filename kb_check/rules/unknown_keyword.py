@@ -16,6 +16,7 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kb_build.flow.values.types import UNKNOWN, Function, members
 from kb_build.symbols.paths import argument_of
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
 def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("keyword"):
-        function = row.missing[0]
+        function = _function_that_took(script, row)
         symbol = script.api.symbols.symbol(function)
         parameters = {parameter.name: parameter for parameter in symbol.parameters} if symbol else {}
         value = _given(script, row)
@@ -42,6 +43,17 @@ def _check(script: Script) -> Iterator[Finding]:
         if named is not None and value is not None and not may_take(script, named, value):
             lacking = replace(lacking, replacement="", sure=False)
         yield lacking_finding(script, RULE.id, row, lacking)
+
+
+def _function_that_took(script: Script, row: Resolution) -> str:
+    """The function that is called; of those of several types that it may be, the one that took the keyword once."""
+    call = next((one for one in script.all(ast.Call) if row.node in one.keywords), None)
+    kinds = members(script.type_of(call.func) or UNKNOWN) if call else ()
+    paths = [kind.path for kind in kinds if isinstance(kind, Function)]
+    once = (
+        (path for path in paths if script.names.path(f"{path}({row.value})")) if len(paths) > 1 else iter(())
+    )
+    return next(once, row.missing[0])
 
 
 def _given(script: Script, row: Resolution) -> ast.expr | None:

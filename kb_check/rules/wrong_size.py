@@ -209,6 +209,8 @@ def _unpacked(script: Script, value: ast.expr, names: list[ast.expr]) -> Finding
     if length is None or len(names) == length or any(isinstance(name, ast.Starred) for name in names):
         return None
     size = size_of(script, value)
+    if not size and isinstance(value, ast.Call) and callee_path(script, value):
+        return None  # wrong-count names what the call gives
     told = in_words(size).capitalize() if size else f"A row of {length}"
     return _finding(script, value, f"{told} cannot be unpacked into {len(names)} names.")
 

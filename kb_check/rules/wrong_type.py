@@ -86,6 +86,7 @@ _LAYER = "bmesh.types.BMLayerItem"
 _HELD = {
     "bmesh.types.BMLoopUV": "loop[layer].uv = (u, v)", "bmesh.types.BMDeformVert": "vert[layer][group_index] = weight",
 }  # fmt: skip
+_WHOLE = " Make it whole first: `int(…)`, `round(…)`, or `//` in place of `/`."
 _KEPT = (
     "keeps a number, a text, bytes, a data-block, a list of one of these kinds, or a dictionary; anything else as a "
     "text, as `json.dumps(…)` makes it"
@@ -133,12 +134,12 @@ def _check(script: Script) -> Iterator[Finding]:
 def _computed(script: Script) -> Iterator[Finding]:
     """What is computed for a property, as behind a tuple."""
     for found in computed_misfits(script):
-        advice = " Make it whole first: `int(…)`, `round(…)`, `//`." if found.taker.kind == "int" else ""
+        advice = _WHOLE if found.taker.kind == "int" else ""
         path, wrong = found.taker.path, found.wrong
         told = f"`{path}` takes {wrong.takes}, not {wrong.given}.{advice}"
         yield Finding(RULE.id, "error", script.span(found.node), told, path)
     for node, wanting in floats_for_ints(script):
-        told = f"{wanting} an int, not a float: `int(…)`, `round(…)`, or `//` in place of `/`."
+        told = f"{wanting} an int, not a float.{_WHOLE}"
         yield Finding(RULE.id, "error", script.span(node), told)
 
 
@@ -258,6 +259,8 @@ def _advice(script: Script, taker: Taker, wrong: Misfit, node: ast.expr) -> str:
     if taker.subtype in _COLORS and (wrong.length, taker.sizes) == (_RGB, (_RGB + 1,)):
         is_short = isinstance(node, (ast.Name, ast.Attribute, ast.Call, ast.Subscript))
         return f" With alpha: `(*{ast.unparse(node)}, 1.0)`." if is_short else ""
+    if (taker.kind, wrong.given) == ("int", "a float"):
+        return _WHOLE
     if taker.path == _KEYED_PATH and isinstance(node, ast.Attribute):
         return f" Give the name: `{node.attr!r}`."
     if taker.sizes == _TRANSFORM and script.class_of(node) == MATRIX:

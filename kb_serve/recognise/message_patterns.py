@@ -216,6 +216,31 @@ def is_message(query: str) -> bool:
     return bool(_EXCEPTION.search(query) or _REPORT.search(query) or _WORDING.search(query))
 
 
+def members_named(query: str) -> Iterator[tuple[str, str]]:
+    """(class, member) of each that a message names whole: ``Scene.frame_end expected an int type``."""
+    for match in first_matches(WRONG_TYPE, query):
+        if match["path"]:
+            owner, _, name = match["path"].rpartition(".")
+            yield owner, name
+    for match in first_matches(READ_ONLY, query):
+        if match["owner"]:
+            yield match["owner"], match["name"]
+    for pattern in (IN_FUNCTION, BAD_KEYWORD):
+        for match in first_matches(pattern, query):
+            if match["method"] and "." in match["method"]:
+                owner, _, name = match["method"].rpartition(".")
+                yield owner, name
+
+
+def items_listed(query: str) -> frozenset[str]:
+    """The items that a message lists as those of the enumeration that was set; none where it says of no property."""
+    if "item.attr = val" not in query:
+        return frozenset()
+    return frozenset(
+        item for match in first_matches(BAD_ENUM, query) for item in re.findall(r"'([^']+)'", match["items"])
+    )
+
+
 def says_what_failed(query: str) -> bool:
     """Whether a message tells what was lacking, or is of something else than a name that is missing."""
     lacking = (HAS_NO, TYPE_HAS_NO, MODULE_HAS_NO, READ_ONLY)

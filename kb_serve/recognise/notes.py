@@ -9,6 +9,7 @@ from kb_build.symbols.api_names import OPERATORS, STRUCT, TYPES, interface_part
 from kb_build.symbols.lines import written
 from kb_build.symbols.paths import as_code, is_socket, last_name, split_path
 from kb_build.symbols.unlisted import OPTIONS, option_of
+from kb_serve.recognise.names.elsewhere.meant_elsewhere import meant_elsewhere
 from kb_serve.recognise.names.likely.corrections import names_meant, nearest
 from kb_serve.recognise.names.named.enum_values import EnumValues
 from kb_serve.recognise.resolving.subscripts import MODIFIER_PROPERTIES, CustomProperties
@@ -136,6 +137,10 @@ class Notes:
         elif symbol.similar:
             close = _CLOSE * symbol.similar[0][1]
             yield f"Similar names: {_list(path for path, score in symbol.similar if score >= close)}."
+        elif not symbol.gone and (
+            meant := meant_elsewhere(*symbol.path.rpartition(".")[::2], self._reader)
+        ):  # what other Blenders have in its place
+            yield meant.how
         how = next((successor.how for successor in symbol.successors if successor.how), "")
         if how and how != _NOTHING:
             yield how

@@ -9,7 +9,7 @@ from bisect import bisect
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, tokens
-from kb_build.symbols.api_names import ID, OPERATORS, TYPES
+from kb_build.symbols.api_names import COLLECTION, ID, OPERATORS, TYPES
 from kb_build.symbols.paths import last_name, plain_path, socket_node
 from kb_serve.recognise.code.contexts import NO_OVERRIDE, OVERRIDE
 from kb_serve.recognise.code.expressions import Expressions
@@ -25,6 +25,8 @@ from kb_serve.recognise.message_patterns import (
     BAD_ENUM,
     classes_of_things,
     is_message,
+    items_listed,
+    members_named,
     says_what_failed,
     without_callers_names,
     without_values,
@@ -65,6 +67,7 @@ from kb_serve.recognise.resolving.subscripts import asked_of_inputs
 from kb_serve.recognise.resolving.variables import is_guess, usual_classes
 
 if TYPE_CHECKING:
+    from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
 
 # What the panels of render engines name engines by, whether this Blender has them or not: none is set.
@@ -168,6 +171,18 @@ class Recogniser:
             is_plain = code == query and "/" not in query
             found = chains if is_plain else own.without(with_bindings(code, _outside_of_paths(code)))
             self._expressions.recognise(found, recognition)
+            if any(True for _ in members_named(query)):
+                recognition.alike, recognition.alike_lost = [], None
+            if any(match.why == "error message" and match.sure >= _WITHIN for match in recognition.matches):
+                # Of which collection it is, the message has told.
+                recognition.missing = [one for one in recognition.missing if one.owner != COLLECTION]
+            if items_listed(query):  # by which the enumeration is found
+                symbols = {match.id: self._reader.symbol(match.id) for match in recognition.matches}
+                others = {
+                    path for path, symbol in symbols.items() if symbol and self._is_other_enum(symbol, query)
+                }
+                recognition.matches = [match for match in recognition.matches if match.id not in others]
+                recognition.alike = []
             if lacked or (is_message(query) and says_what_failed(query)):
                 # What else the line lacks that failed, Python has found there, or has not come to.
                 recognition.missing, recognition.doubted = lacked, None
@@ -229,9 +244,9 @@ class Recogniser:
                 self._read_as(chain, recognition) or self._successor(chain, recognition)
             )
             if symbol is None:
-                self._check_guesses(chain, recognition)
+                self._check_guesses(chain, query, recognition)
                 continue
-            if is_method_of_python(_name(chain), symbol):
+            if is_method_of_python(_name(chain), symbol) or self._is_other_enum(symbol, query):
                 continue  # what it takes and gives is no value of the symbol
             for value in chain.values:
                 where = self._enum_values.where(symbol.path, value)
@@ -249,7 +264,13 @@ class Recogniser:
             if any(note.startswith(NO_OVERRIDE) for note in notes):
                 recognition.add(OVERRIDE, 0.98, "error message")  # before the operator that does not take it
 
-    def _check_guesses(self, chain: Chain, recognition: Recognition) -> None:
+    @staticmethod
+    def _is_other_enum(symbol: Symbol, query: str) -> bool:
+        """Whether a property lacks items that a message lists as those of the one that was set."""
+        listed = items_listed(query) if symbol.kind == "property" and symbol.enum_items else frozenset()
+        return bool(listed) and not listed <= {item.identifier for item in symbol.enum_items}
+
+    def _check_guesses(self, chain: Chain, query: str, recognition: Recognition) -> None:
         """Adds what was lost by what a chain may be read as, and a note on a value that nothing so called takes."""
         guesses = list(filter(None, map(self._reader.symbol, recognition.guesses.get(chain.key, ()))))
         if any(is_method_of_python(_name(chain), guess) for guess in guesses):
@@ -265,6 +286,8 @@ class Recogniser:
             name = guesses[0].path[len(guesses[0].owner) :]
             owners = [path for value in chain.values for path, *_ in self._reader.enum_owners(key(value))]
             if any(path.endswith(name) for path in owners):
+                return
+            if self._is_other_enum(guesses[0], query):
                 return
             if not self._are_of_operator(chain, owners, recognition) and not is_unknown:
                 recognition.notes += wrong_values(chain, guesses[0], (), self._reader)

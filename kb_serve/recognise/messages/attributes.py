@@ -45,7 +45,7 @@ class Attributes:
                 of_module = pattern is forms.MODULE_HAS_NO
                 self._explain(match["owner"], match["name"], query, recognition, of_module=of_module)
         for match in forms.first_matches(forms.NOT_IN_COLLECTION, query):
-            self._owners.of_a_collection(match["name"], recognition)
+            self._owners.of_a_collection(match["name"], query, recognition)
         for match in forms.first_matches(forms.OF_ELEMENTS, query):
             self._lacking_owners.explain_elements(
                 match["owner"], match["collection"], match["name"], recognition
@@ -57,7 +57,7 @@ class Attributes:
         if owner == "NoneType":
             self._none_before.explain(name, query, recognition)
         elif owner == "bpy_prop_collection":
-            self._owners.of_a_collection(name, recognition)
+            self._owners.of_a_collection(name, query, recognition)
         elif owner == "module":  # of which the message does not tell the name
             if not self._imports.tell_if_gone(TYPES + name, recognition):
                 self._lacking_owners.explain_class(name, recognition)

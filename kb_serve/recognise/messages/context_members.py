@@ -1,9 +1,10 @@
-"""Explains messages that the context lacks a member which it has: it is there only with a window."""
+"""Explains messages that the context lacks a member which it has only with a window, or in some editors."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.object_data import OBJECT_DATA
 from kb_build.symbols.records import PROVIDED_BY
 
 if TYPE_CHECKING:
@@ -18,12 +19,26 @@ _WITHOUT_WINDOW = {
 }
 
 
+# What gives members of its own → the type of its area.
+_EDITORS = {
+    "buttons": "PROPERTIES", "clip": "CLIP_EDITOR", "file": "FILE_BROWSER", "image": "IMAGE_EDITOR",
+    "node": "NODE_EDITOR", "sequencer": "SEQUENCE_EDITOR", "text": "TEXT_EDITOR", "view3d": "VIEW_3D",
+}  # fmt: skip
+_OF_OBJECT = frozenset(OBJECT_DATA.values())
+
+
 def note_on_absent(member: Symbol) -> str:
-    """Where a member of the context is not that every editor gives, and what gives the same there; empty for others,
-    of which the answer itself tells the editors.
-    """
-    if _ANYWHERE not in member.flagged(PROVIDED_BY):
-        return ""
+    """Where a member of the context is not that every editor gives, or some alone, and what gives the same there."""
+    givers = member.flagged(PROVIDED_BY)
+    if _ANYWHERE not in givers:
+        editors = " or ".join(_EDITORS[giver] for giver in givers if giver in _EDITORS)
+        of_object = " The active object has its own data: `bpy.context.object.data`."
+        return (
+            f"`bpy.context.{member.name}` is there only where code runs in an area of type {editors}, as its panels do."
+            f"{of_object if member.target in _OF_OBJECT else ''}"
+            if editors
+            else ""
+        )
     instead = _WITHOUT_WINDOW.get(member.name, "")
     return (
         f"`bpy.context.{member.name}` is there only while the context has a window and its screen: not in threads, "

@@ -22,6 +22,8 @@ _NOTHING_GIVEN = (
     "`{argument}` is None here: what is to be shown is not there, as an object without a material, or no active "
     "object. Test it before: `if mat: layout.prop(mat, …)`."
 )
+_NUMBERS = frozenset({"int", "float"})
+_FRAME = "frame"
 _SEQUENCES = frozenset({"tuple", "list"})
 _KIND = "_type"  # at the end of the name of what decides which class a pointer takes
 
@@ -78,7 +80,11 @@ class GivenValues:
             yield "Give a text: `str(path)`." if path else "Give a text: `str(value)`."
         elif (wanted, given) == ("int", "float"):
             yield "Give a whole number: `int(value)`, or `round(value)`."
-        elif wanted in {"int", "float"} and given in _SEQUENCES:
+        elif wanted in _NUMBERS and given == "str":
+            yield f"Give a number, not a text: `{wanted}(value)`."
+        elif wanted == "int" and self._reader.member_of(f"{TYPES}{given}", f"{_FRAME}_number"):
+            yield f"Give the number: `{_FRAME}.{_FRAME}_number`."
+        elif wanted in _NUMBERS and given in _SEQUENCES:
             yield f"Give one number, not a {given} of them."
         elif (
             cls not in ANY

@@ -59,6 +59,22 @@ _OF_ADDONS = (
 )
 
 
+# Of a node that is called after the inputs or the outputs of a group.
+_GROUP_SOCKETS = re.compile(
+    r"\b(?:gin|gout|\w*group_?(?:in|out)\w*|(?:n|node|g)_?(?:in|out)(?:put)?)\.(?:in|out)puts\[",
+    re.IGNORECASE,
+)
+_OF_GROUP = (
+    "The sockets of a Group Input and a Group Output are those of the tree's interface: "
+    "`node_tree.interface.new_socket(\"Radius\", in_out='INPUT', socket_type='NodeSocketFloat')` makes one of each."
+)
+_KEYMAP_ITEMS = re.compile(r"\bkeymap_items\[")
+_OF_KEYMAP = (
+    "The keymaps that Blender brings have items only in a Blender with a window. Add-ons keep their own, which "
+    "`keymap_items.new(…)` returns; those of the user are in `keyconfigs.user`."
+)
+
+
 # What has a name of its own when it is new → what it is, and the operator that adds one.
 _HOLDERS = {
     "modifiers": ("modifier", "bpy.ops.object.modifier_add"),
@@ -87,6 +103,9 @@ class Keys:
             told.append((_SLOTS, KEY_OF_SLOTS))
         if self._reader.entry(EXTENSIONS):
             told.append((_ADDONS, _OF_ADDONS))
+        if self._reader.entry(f"{TYPES}NodeTreeInterface.new_socket"):
+            told.append((_GROUP_SOCKETS, _OF_GROUP))
+        told.append((_KEYMAP_ITEMS, _OF_KEYMAP))
         return tuple(told)
 
     def _key(self, collection: str, name: str, query: str, recognition: Recognition) -> None:

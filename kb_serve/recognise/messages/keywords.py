@@ -35,6 +35,14 @@ _TAKEN_HERE = (
 )
 _UNDO = "undo"
 _UNDO_BY_PLACE = "Whether an undo step is made is told by place: `{path}('EXEC_DEFAULT', True, …)`."
+_OF_OPERATORS = "to operator properties"
+_PARTS = re.compile(r"\b([A-Z_]+)_OT_(\w+)\s*=\s*\{([^{}]*)\}")
+_CALLED = re.compile(r"\bbpy\.ops\.\w+\.\w+(?=\()")
+_OWN_OPERATOR = (
+    "`{path}` is none of Blender's operators. If its class is the script's own, it takes what that declares by an "
+    "annotation, with a colon, and it declares no `{name}`: `{name}: bpy.props.FloatProperty()`, or another of "
+    "`bpy.props`, before the class is registered."
+)
 _SHARED_NAME = "Several functions are called `{name}`: ask for the call as it was written."
 
 
@@ -52,6 +60,16 @@ class Keywords:
             function = match["function"] or match["of"] or match["method"] or self._of_bmesh(match) or ""
             several = re.findall(r"\w+", match["several"] or "")
             for name in several or [match["name"] or match["unexpected"] or match["invalid"]]:
+                if own := self._own_operator(query):
+                    recognition.notes.append(_OWN_OPERATOR.format(path=own, name=name))
+                    continue
+                if part := self._part_given(name, query):
+                    recognition.add(part.path, _ALIKE, "error message")
+                    if removed := self._removed.of_part(part.path, f"({name})"):
+                        recognition.add_removed(removed)
+                    else:
+                        recognition.notes += unknown_keywords(part, {name: ""}, self._reader)
+                    continue
                 self._keyword(name, function, match["meant"] or "", recognition)
 
     def _of_bmesh(self, match: re.Match[str]) -> str:
@@ -59,14 +77,34 @@ class Keywords:
         path = f"{_OF_BMESH}{match['of_bmesh']}"
         return path if self._reader.entry(path) else ""
 
+    def _part_given(self, name: str, query: str) -> Symbol | None:
+        """The operator that is a part of the called one, and is given an argument in a dictionary."""
+        for module, operator, given in _PARTS.findall(query) if _OF_OPERATORS in query else ():
+            if re.search(rf"""(['"]){re.escape(name)}\1\s*:""", given):
+                return self._reader.symbol(f"{OPERATORS}{module.lower()}.{operator}")
+        return None
+
+    def _own_operator(self, query: str) -> str:
+        """The operator that code beside a message calls, where that is none of Blender's: one of the script's own."""
+        called = _CALLED.findall(query) if _OF_OPERATORS in query else []
+        own = [path for path in dict.fromkeys(called) if not self._reader.entry(path)]
+        is_known = any(self._reader.removed(path) for path in own)
+        return own[0] if len(own) == len(set(called)) == 1 and not is_known else ""
+
     def _keyword(self, name: str, function: str, meant: str, recognition: Recognition) -> None:
         """An argument that the function in the message, or else the surest match, does not take (any more).
 
         ``meant`` is what Python says was meant, or empty.
         """
+        ids = [self._symbols.function(function) or self._symbols.taking(function, meant)] if function else []
+        if "." in function and ids[0] and (own := self._removed.of_part(ids[0], f"({name})")):
+            # What others of its name have lost alike, code alone has told of.
+            alike = [one for one in recognition.removed if one.path.endswith(f"({name})")]
+            recognition.removed = [one for one in recognition.removed if one not in alike]
+            recognition.add_removed(own)
+            recognition.add(ids[0], 0.9, "error message")
         if any(removed.path.endswith(f"({name})") for removed in recognition.removed):
             return
-        ids = [self._symbols.function(function) or self._symbols.taking(function, meant)] if function else []
         # Of the functions that share a name, a message with no more than it does not say which one was called.
         called = self._symbols.called_so(function)
         shared = set(called) if len(called) > 1 else set[str]()

@@ -11,8 +11,9 @@ from kb_serve.recognise.messages.context_members import note_on_absent
 from kb_serve.recognise.messages.of_older import of_older
 from kb_serve.recognise.names.by_words.operator_words import known_operator_of_class
 from kb_serve.recognise.names.elsewhere.elements import elsewhere
+from kb_serve.recognise.names.elsewhere.layers import former_layer
 from kb_serve.recognise.names.elsewhere.members_within import members_within
-from kb_serve.recognise.names.likely.corrections import is_misspelling
+from kb_serve.recognise.names.likely.corrections import is_misspelling, nearest
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.recognition import MissingName
 
@@ -77,6 +78,8 @@ class LackingOwners:
             recognition.notes.append(told.format(module=module.path))
             return
         removed = self._removed.of_member(owner, name) or self._removed.below(owner, name) if owner else None
+        if removed is None and (layer := former_layer(owner, name)):
+            removed = self._removed.of_path(layer)
         if removed is None and not self._reader.entry(TYPES + written):
             members = self._removed.spelled(f"{written}.{name}")
             removed = next(members, None) or (None if owner else self._of_a_former_class(written, name))
@@ -170,7 +173,8 @@ class LackingOwners:
         of_block = self._reader.entry(f"{ID}.{name}")
         cls = self._reader.entry(owner)
         is_part = cls is not None and cls.group == "data" and cls.name not in _OF_NO_BLOCK
-        if of_block and is_part and not self._reader.descends(owner, ID):
+        own = nearest(name, self._reader.members(owner))  # an ActionSlot has a ``name_display``
+        if of_block and is_part and not own and not self._reader.descends(owner, ID):
             recognition.add(of_block.path, 0.96, "error message")
             recognition.notes.append(
                 f"The data-block that it is part of has it: `.id_data.{name}` (`{of_block.path}`)."

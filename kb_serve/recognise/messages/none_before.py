@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from functools import cached_property
 from itertools import pairwise
@@ -36,6 +37,13 @@ TAKES_NO_MODIFIER = (
     "`obj.modifiers.new(…)` returns None, without an error, where an object of that type takes no such modifier: an "
     "empty, a light or a camera takes none at all, and a Grease Pencil object its own."
 )
+_CHANNELBAG = f"{TYPES}ActionKeyframeStrip.channelbag"
+_BAG = re.compile(r"bag\b", re.IGNORECASE)
+_OF_BAG = frozenset({"fcurves", "groups"})
+_NO_BAG = (
+    "`strip.channelbag(slot)` is None until the slot has one in the strip: `strip.channelbag(slot, ensure=True)` makes "
+    "it, as the first keyframe does."
+)
 _OF_CONTEXT = frozenset({"bpy", "context", "C"})  # of which is told what it lacks where
 _IS_NONE = "The object before `.{name}`{of} is None: it does not exist (yet), or was not found."
 
@@ -55,7 +63,8 @@ class NoneBefore:
         the context gives, and look-ups by name. Where the code calls what gives None, that alone.
         """
         chains = with_bindings(query, find_chains(query))
-        if self._tell_of_call(name, chains, recognition) or self._tell_read(name, chains, recognition):
+        is_told = self._tell_of_bag(name, query, recognition) or self._tell_of_call(name, chains, recognition)
+        if is_told or self._tell_read(name, chains, recognition):
             return
         owners = {
             entry.owner.removeprefix(TYPES)
@@ -104,6 +113,14 @@ class NoneBefore:
                 recognition.notes.append(f"`{entry.path}` is None on what is new: set it, `{setting}`.")
         if self._is_of_an_area(likely, owners):
             recognition.notes.append(OUTSIDE)
+
+    def _tell_of_bag(self, name: str, query: str, recognition: Recognition) -> bool:
+        """Adds what gives the channelbag of a slot, where that is None; whether the code reads something of one."""
+        is_read = name in _OF_BAG and bool(_BAG.search(query)) and self._reader.entry(_CHANNELBAG) is not None
+        if is_read:
+            recognition.add(_CHANNELBAG, _IS_READ, "may be None")
+            recognition.notes += (_IS_NONE.format(name=name, of=""), _NO_BAG)
+        return is_read
 
     def _read_in_code(self, name: str, chains: Sequence[Chain]) -> SymbolEntry | None:
         """The pointer that the code reads ``.name`` of, on a variable: ``material`` of ``slot.material.name``; that of

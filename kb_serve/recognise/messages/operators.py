@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import OPERATORS, TYPES
 from kb_build.symbols.flags import operator_given, refused_nothing
 from kb_build.symbols.lines import operator_needs
+from kb_build.symbols.records import REFUSED_ALL
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.code.contexts import NO_OVERRIDE, OVERRIDE, context_for, keywords_given
 from kb_serve.recognise.messages.guides import ON_OPERATORS, add_guide
@@ -57,7 +58,7 @@ class Operators:
         for match in forms.first_matches(forms.POLL, query):
             if symbol := self._reader.symbol(match["path"]):
                 recognition.add(symbol.path, 0.98, "error message")
-                if _SAYS_WHY.match(query, match.end()):
+                if _SAYS_WHY.match(query, match.end()) or self._tells_alone(symbol, query[match.end() :]):
                     continue
                 recognition.notes.append(
                     context_for(
@@ -89,6 +90,12 @@ class Operators:
                 if entry := self._reader.entry(f"bmesh.ops.{name}"):
                     recognition.add(entry.path, max(0.82, 0.95 * alike), "similar name")
             recognition.notes.append(f"`bmesh.ops` has no `{match['name']}`.")
+
+    @staticmethod
+    def _tells_alone(operator: Symbol, message: str) -> bool:
+        """Whether a message tells of what an operator wants, and the base knows nothing of that."""
+        is_said = not message.strip().startswith(("failed", "Failed")) and bool(message.strip())
+        return is_said and REFUSED_ALL in operator.flags and not operator_needs(operator)
 
     def _set(self, owner: str, name: str) -> str:
         """The path of what was set, or else of its class, which has it by registration; empty where none is named."""

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import COLLECTION, TYPES
+from kb_serve.recognise.names.elsewhere.elements import elsewhere
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
+    from kb_serve.recognise.names.elsewhere.elements import Elsewhere
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 
@@ -41,11 +44,15 @@ class UnnamedOwners:
         self._reader = reader
         self._removed = removed
 
-    def of_a_collection(self, name: str, recognition: Recognition) -> None:
+    def of_a_collection(self, name: str, query: str, recognition: Recognition) -> None:
         """A member that a collection lacks: the one that lost it, and the collections that have it, weightiest first.
 
-        Messages do not name a collection's own class.
+        Messages do not name a collection's own class; the code beside one may name the property that it is.
         """
+        if other := self._done_elsewhere(name, query):
+            recognition.add(other.path, 0.98, "error message")
+            recognition.notes.append(other.how)
+            return
         lost = [
             path for path in self._removed.paths_named(name) if path.rpartition(".")[0] in self._collections
         ]
@@ -63,6 +70,18 @@ class UnnamedOwners:
             listed = ", ".join(f"`{self._collections[entry.owner]}.{name}`" for entry in having[:_FEW])
             more = f" and {len(having) - _FEW} more" if len(having) > _FEW else ""
             recognition.notes.append(f"This collection has no `{name}`; others have: {listed}{more}.")
+
+    def _done_elsewhere(self, name: str, query: str) -> Elsewhere | None:
+        """What adds or removes elements of the one collection that code asks for that: ``key_blocks.new("A")``."""
+        for called in re.findall(rf"\.(\w+)\.{re.escape(name)}\b", query)[:_FEW]:
+            entries = [entry for entry in self._reader.by_name(called) if entry.kind == "property"]
+            found = {other for entry in entries if (other := elsewhere(entry.path, name, self._reader))}
+            has_it = any(
+                self._reader.member_of(entry.collection, name) for entry in entries if entry.collection
+            )
+            if len(found) == 1 and not has_it:
+                return found.pop()
+        return None
 
     def _of_ones_own(self, name: str, recognition: Recognition, *, sure: float) -> None:
         """What a collection that an add-on registers has for what was called."""

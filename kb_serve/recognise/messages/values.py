@@ -30,6 +30,7 @@ _TAKEN_BY = "`{name}` is a value of {owners}."
 _NOT_NOW = "`{name}` is a value of `{owner}`, which present data do not allow."
 _OTHER_VERSION = "Blender {version} takes `{name}` for `{owner}`: the message is another version's."
 _ONE_OF = "`{name}` is not an item of this enum, which has {items}."
+_MINUS = "-"  # which a name's key does not tell
 _MOST_ITEMS = 8  # that are listed
 _NEVER = "RNA lists `{name}` for `{owner}`, and no {thing} comes to have it.{instead}"
 _OF_OPERATORS = "to operator properties"
@@ -139,7 +140,8 @@ class Values:
             yield self._enum_values.condition(owner, name)
             if self._enum_values.has(owner, name):
                 yield self._never_had(owner, name, items) or self._not_taken(owner, name)
-            spelled = (item for path, item, _ in self._reader.enum_owners(key(name)) if path == owner)
+            same = [] if name.startswith(_MINUS) else self._reader.enum_owners(key(name))
+            spelled = (item for path, item, _ in same if path == owner)
             yield next(
                 (_NO_ITEM.format(name=name, similar=f"`{item}`") for item in spelled if item != name), ""
             )

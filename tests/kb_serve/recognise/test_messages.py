@@ -1035,7 +1035,7 @@ def test_a_key_that_an_input_of_geometry_nodes_lacks_is_no_registered_property(k
          "unrecognized", "`bpy.ops.material.new` takes no arguments."),
         ("AttributeGroupMesh.new(): error with argument 3, \"domain\" -  Function.domain enum \"FACE_CORNER\" not "
          "found in ('POINT', 'EDGE', 'FACE', 'CORNER', 'CURVE', 'INSTANCE', 'LAYER')",
-         "`FACE_CORNER` is not an item of this enum; of that label: `CORNER`."),
+         "`FACE_CORNER` is not an item of this enum; closest: `CORNER`."),
         ("ob.data.vertices[0].groups[0].weight\nIndexError: bpy_prop_collection[index]: index 0 out of range, size 0",
          "The collection has no elements: there is no `[0]` yet."),
     ],

@@ -207,6 +207,20 @@ registered("Operator", bl_idname=3)
 enabled("older", blender_version_max="4.2.1")
 enabled("empty", is_whole=False)
 bpy.context.preferences.addons["cycles"].preferences.compute_device_type = "GPU"
+json.dumps(ob.location)
+[1, 2][ob.location.x]
+"x" * ob.location.x
+mesh.vertices["Cube"]
+bpy.data.libraries.load(copied()).__enter__()[0].material
+mesh.vertices[0].values = 2
+"Objects: " + len(bpy.data.objects)
+unbound()
+sum(v.co for v in mesh.vertices)
+ob.location = ob.matrix_world
+ob.matrix_world = mathutils.Matrix.Identity(3)
+ob.rotation_euler + ob.rotation_euler
+registered("Panel", bl_space_type="PROPERTIES", bl_region_type="TOOLS")
+bpy.ops.extensions.package_install(repo_index=0, pkg_id="x")
 """.splitlines()
 _RUN = """
 import json, os, sys, tempfile
@@ -289,6 +303,16 @@ def armature():
 def saved():
     bpy.ops.wm.save_as_mainfile(filepath=os.path.join(tempfile.mkdtemp(), "a.blend"))
     return bpy.data.filepath
+
+def copied():
+    file = os.path.join(tempfile.mkdtemp(), "b.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=file, copy=True)
+    return file
+
+def unbound():
+    if not scene:
+        found = ob
+    return found
 
 def marked():
     with bpy.context.temp_override(id=ob):

@@ -20,6 +20,10 @@ _OF_OPERATORS = (
     "Operators return a set, {'FINISHED'}, and not what they make. That is the active object then: "
     "`bpy.ops.mesh.primitive_cube_add()`, and in the next line `cube = bpy.context.object`."
 )
+_WHOLE = (
+    "An index, and how often something is repeated, is a whole number; coordinates and what `/` gives are floats: "
+    "`int(value)`, `round(value)`, `count // 2`."
+)
 PYTHON = (
     NamelessMessage(
         ("type str doesn't define __round__ method",),
@@ -173,5 +177,46 @@ PYTHON = (
         ("TypeError: function is not callable",),
         ("bpy.app.timers.register",),
         "Give the function itself, `bpy.app.timers.register(step)`, not what a call of it returns (`step()`).",
+    ),
+    NamelessMessage(
+        ("Object of type ", " is not JSON serializable"),
+        ("mathutils.Vector.to_tuple", f"{T}ID.name"),
+        "JSON keeps numbers, texts, lists and dictionaries: `list(obj.location)`, `[list(row) for row in "
+        "obj.matrix_world]`, and the name of a data-block, `obj.name`.",
+    ),
+    *(
+        NamelessMessage((part,), ("mathutils.Vector", COLLECTION), _WHOLE)
+        for part in (
+            "indices must be integers or slices, not float",
+            "can't multiply sequence by non-int of type 'float'",
+        )
+    ),
+    NamelessMessage(
+        (" does not support string lookups",),
+        (COLLECTION, f"{T}MeshVertices"),
+        "The elements of this collection have no names: they are found by index, as `mesh.vertices[0]`.",
+    ),
+    NamelessMessage(
+        ("'bpy_lib' object has no attribute",),
+        (f"{T}BlendDataLibraries.load", f"{T}BlendData.objects"),
+        "What `bpy.data.libraries.load()` gives has the names of the collections of `bpy.data`, in the plural: "
+        "`data_from.objects`, `data_from.materials`, `data_from.node_groups`; each is a list of names.",
+    ),
+    NamelessMessage(
+        ("' object attribute '", "' is read-only"),
+        (COLLECTION, f"{T}bpy_struct"),
+        "What is assigned is a function of the thing, not one of its properties: a property has another name.",
+        without=("bpy_struct: attribute",),
+    ),
+    NamelessMessage(
+        ("can only concatenate str (not ",),
+        (f"{T}Text.write", COLLECTION),
+        'A text is added to a text: `str(value)`, or `f"Objects: {len(bpy.data.objects)}"`.',
+    ),
+    NamelessMessage(
+        ("cannot access local variable ",),
+        ("bpy.context.object",),
+        "No line of the function that was run has given the variable a value: an error before was passed over, or the "
+        "branch that sets it was not taken. Set it before the branches, as `obj = None`.",
     ),
 )

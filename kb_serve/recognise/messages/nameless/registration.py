@@ -118,4 +118,16 @@ REGISTRATION = (
         "While add-ons are registered, `bpy.data` holds nothing: read it in an operator's or panel's functions, in a "
         "`load_post` handler, or soon after: `bpy.app.timers.register(function)`.",
     ),
+    NamelessMessage(
+        ("Region not found in space type",),
+        (f"{T}Panel.bl_region_type", f"{T}Panel.bl_space_type"),
+        "The editor of `bl_space_type` has no region of that `bl_region_type`: panels of the Properties editor are in "
+        "'WINDOW', those of the sidebar of a viewport in 'UI'.",
+    ),
+    NamelessMessage(
+        ("Online access required",),
+        (f"{T}PreferencesSystem.use_online_access", "bpy.app.online_access"),
+        "Extensions are fetched only where the user allows it: "
+        "`bpy.context.preferences.system.use_online_access = True`, unless Blender was started with `--offline-mode`.",
+    ),
 )

@@ -71,11 +71,32 @@ VECTORS = (
         "One vector has more numbers than the other: `v.to_3d()` adds what lacks, `v.to_2d()` drops what is too much.",
     ),
     NamelessMessage(
+        ("Vector addition: (int + Vector) invalid type",),
+        ("mathutils.Vector",),
+        "`sum` begins with the number 0: give it a vector to begin with, `sum(vectors, Vector())`.",
+    ),
+    NamelessMessage(
+        ("matrix assign array with 1 dimensions",),
+        ("mathutils.Matrix.translation", "mathutils.Matrix.decompose"),
+        "A matrix is no row of numbers: take its part, `matrix.translation`, `matrix.to_euler()`, `matrix.to_scale()`.",
+    ),
+    NamelessMessage(
+        ("matrix assign dimension size mismatch",),
+        ("mathutils.Matrix.to_4x4", f"{T}Object.matrix_world"),
+        "The matrices of objects and bones have four rows and columns: `matrix.to_4x4()` makes one of a rotation.",
+    ),
+    NamelessMessage(
+        ("unsupported operand type(s) for ", "'Euler'"),
+        ("mathutils.Euler.rotate", "mathutils.Euler.to_matrix"),
+        "An Euler is not computed with: change one of its angles (`euler.z += 0.5`), turn it by `euler.rotate(other)`, "
+        "or compute with `euler.to_matrix()`.",
+    ),
+    NamelessMessage(
         ("Vector ", "invalid type for this operation"),
         ("mathutils.Vector",),
         "Vectors are added to vectors: `v + Vector(value)`, with a value of as many numbers; `Vector((n, n, n))` for "
         "one number.",
-        without=("NoneType",),
+        without=("NoneType", "(int + Vector)"),
     ),
     NamelessMessage(
         ("multiplication: not supported between ", "'tuple'"),

@@ -9,11 +9,13 @@ if TYPE_CHECKING:
 
     from kb_serve.reader import BaseReader, SymbolEntry
 
+_OF_BMESH = "bmesh.types."
 _LAYERS = "bmesh.types.BMLayerAccess"
 _SEQUENCES = {
     "bmesh.types.BMVert": "verts", "bmesh.types.BMEdge": "edges", "bmesh.types.BMFace": "faces",
     "bmesh.types.BMLoop": "loops",
 }  # fmt: skip
+_ELEMENT = "bmesh.types.BM"
 _NOTE = "It is in a layer: `layer = bm.{sequence}.layers.{layer}.verify()` before, then `{element}[layer]{member}`."
 
 
@@ -24,12 +26,18 @@ def in_layers(owner: str, name: str, reader: BaseReader) -> Iterator[tuple[Symbo
     sequence = _SEQUENCES.get(owner)
     if sequence is None:
         return
-    element = owner.removeprefix("bmesh.types.BM")
+    element = owner.removeprefix(_ELEMENT)
     for layer in reader.members(f"{_LAYERS}{element}").values():
         held = layer.type.partition("[")[2].rstrip("]")
-        member = reader.entry(f"{held}.{name}")
+        # A vector's length is nothing that the layer is asked for.
+        member = reader.entry(f"{held}.{name}") if held.startswith(_OF_BMESH) else None
         if member is None and layer.name != name:
             continue
         written = f".{name}" if member else ""
         note = _NOTE.format(sequence=sequence, layer=layer.name, element=element.lower(), member=written)
         yield member or layer, note
+
+
+def former_layer(owner: str, name: str) -> str:
+    """The path of the layer of an element's class that a name may mean, which another Blender has."""
+    return f"{_LAYERS}{owner.removeprefix(_ELEMENT)}.{name}" if owner in _SEQUENCES else ""

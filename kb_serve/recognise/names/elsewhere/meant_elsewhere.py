@@ -36,6 +36,9 @@ _STROKES = MeantElsewhere(
 _OF_POSE = MeantElsewhere(
     f"{T}PoseBone.constraints", "The bone of the pose has them: `obj.pose.bones[bone.name].constraints`."
 )
+_LENGTH = MeantElsewhere(
+    "mathutils.Vector.length", "The distance of two points is the length between them: `(a - b).length`."
+)
 # Member that a class lacks → what is meant.
 MEANT_ELSEWHERE = {
     f"{T}Action.channelbag": _CHANNELBAG,
@@ -66,8 +69,19 @@ MEANT_ELSEWHERE = {
     f"{T}Context.depsgraph": MeantElsewhere(
         f"{T}Context.evaluated_depsgraph_get", "`bpy.context.evaluated_depsgraph_get()` gives it, up to date."
     ),
+    f"{T}bpy_struct.setdefault": MeantElsewhere(
+        f"{T}bpy_struct.get",
+        'A custom property is set where it is not there yet: `if "name" not in obj: obj["name"] = value`.',
+    ),
+    "mathutils.Vector.distance": _LENGTH,
+    "mathutils.Vector.distance_to": _LENGTH,
     f"{T}Keyframe.frame": _OF_KEYFRAME,
     f"{T}Keyframe.value": _OF_KEYFRAME,
+    f"{T}NodesModifier.properties": MeantElsewhere(
+        f"{T}NodeTreeInterfaceSocket.identifier",
+        'Before 5.2 its inputs are custom properties: `modifier["Socket_2"] = 5.0`; `item.identifier` of '
+        "`node_group.interface.items_tree` tells each one's key.",
+    ),
     f"{T}RenderSettings.samples": MeantElsewhere(
         f"{T}CyclesRenderSettings.samples",
         "Each engine has its own: `scene.cycles.samples`, `scene.eevee.taa_render_samples`.",

@@ -50,9 +50,11 @@ def likely_values(written: str, items: Sequence[str]) -> list[str]:
         return same
     items = [*_without_opposites(written, items)]
     said = written.upper()
-    # ``ARMATURE_AUTOMATIC`` begins with ``ARMATURE_AUTO``.
-    if begun := [item for item in items if "_" in item and said.startswith(item)]:
-        return sorted(begun, key=len, reverse=True)[:_MOST]
+    # ``ARMATURE_AUTOMATIC`` begins with ``ARMATURE_AUTO``, ``GREASE_PENCIL_LINEART`` ends with ``LINEART``.
+    begun = [item for item in items if "_" in item and said.startswith(item)]
+    ended = [item for item in items if len(item) > _LONG and said.endswith(f"_{item}")]
+    if begun or ended:
+        return sorted(begun or ended, key=len, reverse=True)[:_MOST]
     if similar := [item for item, _ in nearest(written, items)]:
         return _with_alike(said, similar, items)
     similar = [item for item in items if len(item) >= _LONG and said.startswith(item.upper())]
