@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from kb_serve.reader import BaseReader
+    from kb_serve.recognise.names.elsewhere.meant_elsewhere import MeantElsewhere
     from kb_serve.recognise.recognition import MissingName, Recognition
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol
 
@@ -137,13 +138,16 @@ class Notes:
         elif symbol.similar:
             close = _CLOSE * symbol.similar[0][1]
             yield f"Similar names: {_list(path for path, score in symbol.similar if score >= close)}."
-        elif not symbol.gone and (
-            meant := meant_elsewhere(*symbol.path.rpartition(".")[::2], self._reader)
-        ):  # what other Blenders have in its place
+        elif meant := None if symbol.gone else self._before(symbol.path):
             yield meant.how
         how = next((successor.how for successor in symbol.successors if successor.how), "")
         if how and how != _NOTHING:
             yield how
+
+    def _before(self, path: str) -> MeantElsewhere | None:
+        """What Blenders have that lack what is newer."""
+        owner, _, name = path.rpartition(".")
+        return meant_elsewhere(owner, name, self._reader)
 
     def setting_of(self, path: str) -> str:
         """A sentence on the setting without which an item of an enumeration is not taken; "" for other paths."""
