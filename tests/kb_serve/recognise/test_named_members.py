@@ -126,7 +126,9 @@ _OPERATOR = "TypeError: Converting py args to operator properties"
         ),
     ],
 )  # fmt: skip
-def test_what_a_message_names_decides(kb: KnowledgeBase, line: str, message: str, said: str, unsaid: str) -> None:
+def test_what_a_message_names_decides(
+    kb: KnowledgeBase, line: str, message: str, said: str, unsaid: str
+) -> None:
     notes = "\n".join(kb.query(f"{line}\n{message}").notes)
     assert said in notes
     assert unsaid not in notes
