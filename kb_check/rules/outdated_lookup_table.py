@@ -11,8 +11,8 @@ bm.verts.ensure_lookup_table()
 bm.verts[0].co.z = 1
 ```
 
-Reported in scripts that make a BMesh and never call ``ensure_lookup_table``. Not reported: BMeshes of edit mode, whose
-tables a tool may have left in order.
+Reported in scripts that make a BMesh and never call ``ensure_lookup_table`` of such a sequence: each has a table of its
+own. Not reported: BMeshes of edit mode, whose tables a tool may have left in order.
 """
 
 from __future__ import annotations
@@ -30,22 +30,25 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _FACES = "bmesh.types.BMFaceSeq"
-_TABLES = frozenset({"bmesh.types.BMVertSeq", "bmesh.types.BMEdgeSeq", _FACES})
 _MAKES = "bmesh.new"
-_ENSURES = frozenset({"ensure_lookup_table", "from_edit_mesh"})
+_OF_EDIT_MODE, _ENSURES = "from_edit_mesh", "ensure_lookup_table"
+_SEQUENCES = {
+    "verts": "bmesh.types.BMVertSeq", "edges": "bmesh.types.BMEdgeSeq", "faces": _FACES,
+}  # fmt: skip
 _ENSURES_FACES = "bmesh.ops.recalc_face_normals"  # of all functions of bmesh the only one, as tried
 
 
 def _check(script: Script) -> Iterator[Finding]:
     called = {row.value for row in script.resolutions("call")}
     named = {node.attr for node in script.all(ast.Attribute)}
-    if _MAKES not in called or named & _ENSURES:
+    missing = frozenset(_SEQUENCES.values()) - _with_tables(script)
+    if _MAKES not in called or _OF_EDIT_MODE in named or not missing:
         return
     for node in script.all(ast.Subscript):
         if isinstance(node.slice, ast.Slice):
             continue
         owner, key = script.type_of(node.value), script.type_of(node.slice)
-        if not isinstance(owner, Instance) or owner.cls not in _TABLES or not owner.sure:
+        if not isinstance(owner, Instance) or owner.cls not in missing or not owner.sure:
             continue
         row = script.analysis.resolutions.get(node.value)
         by_index = isinstance(key, Plain) and key.kind == "int"
@@ -64,6 +67,16 @@ def _check(script: Script) -> Iterator[Finding]:
             (f"{owner.cls}.ensure_lookup_table",),
             _fix(script, row.statement, text),
         )
+
+
+def _with_tables(script: Script) -> frozenset[str]:
+    """The classes of the sequences whose tables the script makes, whenever; all where it does not show which."""
+    found: set[str] = set()
+    for node in script.all(ast.Attribute):
+        if node.attr == _ENSURES:
+            name = node.value.attr if isinstance(node.value, ast.Attribute) else ""
+            found.update([_SEQUENCES[name]] if name in _SEQUENCES else _SEQUENCES.values())
+    return frozenset(found)
 
 
 def _fix(script: Script, statement: ast.stmt | None, text: str) -> Fix | None:

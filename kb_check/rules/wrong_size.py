@@ -25,6 +25,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.flow.values.types import Tuple
 from kb_check.calls.resolved import callee_path
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
@@ -209,7 +210,11 @@ def _unpacked(script: Script, value: ast.expr, names: list[ast.expr]) -> Finding
     if length is None or len(names) == length or any(isinstance(name, ast.Starred) for name in names):
         return None
     size = size_of(script, value)
-    if not size and isinstance(value, ast.Call) and callee_path(script, value):
+    if (
+        isinstance(script.type_of(value), Tuple)
+        and isinstance(value, ast.Call)
+        and callee_path(script, value)
+    ):
         return None  # wrong-count names what the call gives
     told = in_words(size).capitalize() if size else f"A row of {length}"
     return _finding(script, value, f"{told} cannot be unpacked into {len(names)} names.")

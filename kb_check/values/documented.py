@@ -56,6 +56,7 @@ _CONVERT_NOTHING = (
 )  # fmt: skip
 _ANYTHING = frozenset({f"{T}AnyType", f"{T}Property", f"{T}Struct"})
 _NUMBERS = frozenset({"bool", "int", "float"})
+_OF_LAYERS = {"color": 4, "float_color": 4, "float_vector": 3, "shape": 3}  # numbers of each element
 _TRUTH = frozenset({"bool", "int"})
 # Documented types that surely refuse others: what each takes. ``bool`` takes anything, as Python does.
 _DOCUMENTED = {"str": frozenset({"str"}), "string": frozenset({"str"}), "float": _NUMBERS, "int": _NUMBERS}
@@ -274,6 +275,18 @@ def _parts(documented: str) -> list[str]:
     return documented.replace(_MATHUTILS, "").split(" | ")
 
 
+def _numbers_of_layer(script: Script, layer: ast.expr) -> int:
+    """How many numbers a layer of vectors holds for each element; 0 where that is not known."""
+    match once_bound(script, layer):
+        case (
+            ast.Call(func=ast.Attribute(value=ast.Attribute(attr=kind)))
+            | ast.Attribute(value=ast.Attribute(attr=kind))
+        ):
+            return _OF_LAYERS.get(kind, 0)
+        case _:
+            return 0
+
+
 def layer_misfit(script: Script, target: ast.Subscript, value: ast.expr) -> Misfit | None:
     """Why an element of a BMesh refuses a value for one of its layers: ``loop[uv_layer] = (0, 0)``."""
     owner, key, kind = map(script.type_of, (target.value, target.slice, value))
@@ -288,6 +301,9 @@ def layer_misfit(script: Script, target: ast.Subscript, value: ast.expr) -> Misf
     kinds = members(kind)
     match held:
         case Instance(cls=cls) if cls == _VECTOR_CLASS:
+            wanted, parts = _numbers_of_layer(script, target.slice), items(script, value)
+            if wanted and parts is not None and len(parts) != wanted:
+                return Misfit(f"{wanted} numbers", f"{len(parts)} items", len(parts))
             is_refused = is_none or all(isinstance(one, (Plain, Mapping)) for one in kinds)
             takes = "a sequence of numbers"
         case Instance(cls=cls):

@@ -73,12 +73,31 @@ _KEPT = (
     "[1, None]", "[]", "{}", "[[1, 2], [3, 4]]", "[(1, 2), (3, 4)]", "[{'a': 1}]", "[{'a': 1}, 2]", "[True, 1]",
     "[1, 2.5]", "b'x'", "None", "ob", "[ob]", "ob.location", "bpy.ops.object.delete", "'a'", "str(pair)", "set()",
 )  # fmt: skip
+_OF_LAYERS = """\
+import bmesh
+bm = bmesh.new()
+bmesh.ops.create_cube(bm, size=1)
+color = bm.loops.layers.color.new('a')
+float_color = bm.loops.layers.float_color.new('b')
+vector = bm.verts.layers.float_vector.new('c')
+shape = bm.verts.layers.shape.new('d')
+bm.faces.ensure_lookup_table()
+face = bm.faces[0]
+loop, vert = face.loops[0], face.verts[0]
+"""
+_FILLED = [
+    f"{filled} = {(1.0,) * count}"
+    for filled in ("loop[color]", "loop[float_color]", "vert[vector]", "vert[shape]")
+    for count in (2, 3, 4)
+]
 _RULES = ["wrong-type", "wrong-size", "wrong-count", "refused-product", "not-subscriptable"]
 
 
-def _compare(checker: Checker, folder: Path, lines: list[str]) -> tuple[list[str], list[str]]:
+def _compare(
+    checker: Checker, folder: Path, lines: list[str], made_of: str = _MADE
+) -> tuple[list[str], list[str]]:
     """What is reported and works, and what Blender refuses and is not reported."""
-    made = _MADE.splitlines()
+    made = made_of.splitlines()
     answers = run_statements(folder, [*made, *lines])[len(made) :]
     found = {one.span.line - len(made) for one in checker.check("\n".join([*made, *lines]), rules=_RULES)}
     rows = list(enumerate(zip(lines, answers, strict=True), start=1))
@@ -98,6 +117,10 @@ def test_rows_of_another_length_are_found(rule_checker: Checker, tmp_path: Path)
 )
 def test_values_of_another_kind_are_found(rule_checker: Checker, tmp_path: Path, lines: list[str]) -> None:
     assert _compare(rule_checker, tmp_path, list(lines)) == ([], [])
+
+
+def test_values_of_layers_of_another_length_are_found(rule_checker: Checker, tmp_path: Path) -> None:
+    assert _compare(rule_checker, tmp_path, _FILLED, _OF_LAYERS) == ([], [])
 
 
 def test_what_only_an_annotation_calls_a_float_is_not_reported(check: Check) -> None:

@@ -15,7 +15,13 @@ if TYPE_CHECKING:
 SETTING = ["import bpy, bmesh", "bm = bmesh.new()", "made = bmesh.ops.create_cube(bm, size=1)"]
 
 
-@pytest.mark.parametrize("line", ["bm.verts[0].co.z = 1", "print(bm.faces[-1])", "edge = bm.edges[3]"])
+@pytest.mark.parametrize(
+    "line",
+    [
+        "bm.verts[0].co.z = 1", "print(bm.faces[-1])", "edge = bm.edges[3]",
+        "bm.faces[0].select = bool(bm.verts.ensure_lookup_table())",
+    ],
+)  # fmt: skip
 def test_missing_table_is_found_and_made(check: Check, tmp_path: Path, line: str) -> None:
     [finding] = check("outdated-lookup-table", "\n".join([*SETTING, line]))
     assert finding.span.line == 4
@@ -33,6 +39,11 @@ def test_missing_table_is_found_and_made(check: Check, tmp_path: Path, line: str
     [
         ["bm.verts.ensure_lookup_table()", "bm.verts[0].co.z = 1"],
         ["bm.verts[:][0].co.z = 1"],
+        [
+            "for parts in (bm.verts, bm.faces):",
+            "    parts.ensure_lookup_table()",
+            "bm.faces[0].select = True",
+        ],
         ["made['verts'][0].co.z = 1"],
         ["for vert in bm.verts:", "    vert.co[0] = 1"],
         ["bmesh.ops.recalc_face_normals(bm, faces=bm.faces)", "bm.faces[0].select = True"],
