@@ -99,8 +99,10 @@ class Keywords:
         ids = [self._symbols.function(function) or self._symbols.taking(function, meant)] if function else []
         if "." in function and ids[0] and (own := self._removed.of_part(ids[0], f"({name})")):
             # What others of its name have lost alike, code alone has told of.
-            alike = [one for one in recognition.removed if one.path.endswith(f"({name})")]
-            recognition.removed = [one for one in recognition.removed if one not in alike]
+            part = f"({name})"
+            recognition.removed = [
+                one for one in recognition.removed if one.path == own.path or not one.path.endswith(part)
+            ]
             recognition.add_removed(own)
             recognition.add(ids[0], 0.9, "error message")
         if any(removed.path.endswith(f"({name})") for removed in recognition.removed):

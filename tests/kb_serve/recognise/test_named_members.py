@@ -75,6 +75,18 @@ _OPERATOR = "TypeError: Converting py args to operator properties"
             "id_data",
         ),
         (
+            "print(edge.calc_length(), edge.length)",
+            "AttributeError: 'BMEdge' object has no attribute 'length'",
+            "Closest: `bmesh.types.BMEdge.calc_length`",
+            "layer",
+        ),
+        (
+            "print(slot.name, slot.name_display)",
+            "AttributeError: 'ActionSlot' object has no attribute 'name'",
+            "Closest: `bpy.types.ActionSlot.name_display`",
+            "id_data",
+        ),
+        (
             "keys.key_blocks.new('Smile')",
             'AttributeError: bpy_prop_collection: attribute "new" not found',
             "`obj.shape_key_add(name=",
