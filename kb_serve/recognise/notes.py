@@ -174,21 +174,23 @@ class Notes:
             elif missing.owner and missing.name.startswith("["):
                 yield f"`{missing.owner}` takes no custom properties: `{missing.name}` fails.{closest}"
             elif missing.owner and missing.name not in removed_names:
-                alike = closest or self._named_beside(missing, recognition)
-                yield f"{_if(missing.variable)}{self._lacks(missing)}{alike}"
+                alike = dict.fromkeys(
+                    (*self._named_beside(missing, recognition), *map(self._written, similar))
+                )
+                closest_to_it = f" Closest: {_list(alike)}." if alike else ""
+                yield f"{_if(missing.variable)}{self._lacks(missing)}{closest_to_it}"
         if (doubted := recognition.doubted) and not recognition.removed:
             names = nearest(doubted.name, names_meant(doubted.owner, self._reader, called=doubted.called))
             meant = similar or [f"{doubted.owner}.{name}" for name, _ in names]
             closest = f" Closest: {_list(meant)}." if meant else ""
             yield f"{_if(doubted.variable)}{self._lacks(doubted)}{closest}"
 
-    def _named_beside(self, missing: MissingName, recognition: Recognition) -> str:
-        """A sentence on what is most like a name that a class lacks, where the query names that as well."""
+    def _named_beside(self, missing: MissingName, recognition: Recognition) -> list[str]:
+        """What is most like a name that a class surely lacks, where the query names that as well."""
         names = names_meant(missing.owner, self._reader, called=missing.called) if missing.sure else []
-        named = {match.id for match in recognition.matches}
-        alike = [f"{missing.owner}.{name}" for name, _ in nearest(missing.name, names)]
-        found = [path for path in alike if path in named]
-        return f" Closest: {_list(found)}." if found else ""
+        named = {match.id for match in recognition.matches if match.why == "expression"}
+        alike = (f"{missing.owner}.{name}" for name, _ in nearest(missing.name, names))
+        return [path for path in alike if path in named]
 
     def _may_have_more(self, owner: str) -> bool:
         """Whether something may have more than is known: a class of the interface, which Python has made, or a member
