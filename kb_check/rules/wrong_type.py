@@ -9,6 +9,7 @@ scene.frame_end = 250.0  # reported
 scene.frame_start, scene.frame_end = action.frame_range  # reported: floats
 scene.render.resolution_x /= 2  # reported: a float
 range(ob.location.x)  # reported: a float
+json.dumps({"place": ob.location})  # reported: list(ob.location)
 material.diffuse_color = (1, 0, 0)  # reported: 4 floats
 scene.camera = bpy.data.cameras.new("Camera")  # reported: an Object that has it
 scene.render.filepath = pathlib.Path("/tmp/x.png")  # reported: str(…)
@@ -64,10 +65,10 @@ from kb_check.values.computed import computed_misfits
 from kb_check.values.conversions import misfit
 from kb_check.values.custom_values import refused_value
 from kb_check.values.documented import layer_misfit
+from kb_check.values.for_python import floats_for_ints, not_for_json
 from kb_check.values.given import assigned, class_values, given_values
 from kb_check.values.mathutils_sizes import MATRIX
 from kb_check.values.misfits import describe
-from kb_check.values.python_ints import floats_for_ints
 from kb_check.values.python_paths import is_path
 from kb_serve.recognise.names.likely.likely_values import item_called
 
@@ -141,6 +142,9 @@ def _computed(script: Script) -> Iterator[Finding]:
     for node, wanting in floats_for_ints(script):
         told = f"{wanting} an int, not a float.{_WHOLE}"
         yield Finding(RULE.id, "error", script.span(node), told)
+    for node, cls in not_for_json(script):
+        told = f"JSON keeps no instance of `{cls}`: give numbers, texts or lists, as `list(ob.location)`, `ob.name`."
+        yield Finding(RULE.id, "error", script.span(node), told, cls)
 
 
 def _doubles(script: Script) -> Iterator[Finding]:

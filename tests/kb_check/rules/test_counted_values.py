@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 _MADE = """\
 import bpy
 import colorsys
+import json
 import math
 from mathutils import Color, Euler, Matrix, Quaternion, Vector
 ob = bpy.data.objects['Cube']
@@ -67,6 +68,14 @@ _LINES = (
     "sum([Color(), Color()])", "ob.data.vertices['x']", "bpy.context.object.data.vertices['x']",
     "ob.data.vertices.foreach_set('select', ['a'] * 8)", "ob.data.vertices.foreach_set('select', [True] * 8)",
 )  # fmt: skip
+_JSON = [
+    f"json.dumps({value})"
+    for value in (
+        "ob.location", "list(ob.location)", "{'a': ob.location}", "[ob.location]", "[*ob.location]", "ob", "ob.name",
+        "(1, ob.color)", "tuple(ob.color)", "ob.matrix_world", "ob, default=str", "ob.location.x",
+        "{'a': {'b': ob.data}}", "ob['kept'] if 'kept' in ob else 1", "scene.frame_current", "[list(row) for row in ob.matrix_world]",
+    )
+]  # fmt: skip
 _KEPT = (
     "{1, 2}", "{n for n in pair}", "(n for n in pair)", "map(int, pair)", "range(3)", "lambda: 1", "Own", "len",
     "add", "add()", "bpy.types.Object", "Matrix()", "Vector()", "[1, 'a']", "['a', 'b']", "(1, 'a')", "[None]",

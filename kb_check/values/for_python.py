@@ -1,11 +1,13 @@
-"""Floats where Python itself wants a whole number: in ``range``, as an index, as how often a text is repeated."""
+"""What Python refuses of Blender's values: floats where it wants a whole number (in ``range``, as an index, as how
+often a text is repeated), and what ``json`` is given that is no plain value.
+"""
 
 from __future__ import annotations
 
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.values.types import UNKNOWN, Builtin, Plain, Sequence, Tuple, members
+from kb_build.flow.values.types import UNKNOWN, Builtin, Instance, Plain, Sequence, Tuple, members
 from kb_check.running.tried import is_tried
 
 if TYPE_CHECKING:
@@ -22,6 +24,32 @@ def floats_for_ints(script: Script) -> Iterator[tuple[ast.expr, str]]:
     for node, wanting in (*_of_ranges(script), *_indices(script), *_repeated(script)):
         if _kinds(script, node) == {"float"} and not is_tried(script, node, _REFUSES):
             yield node, wanting
+
+
+def not_for_json(script: Script) -> Iterator[tuple[ast.expr, str]]:
+    """What ``json.dumps`` surely refuses of what it is given, and its class, where no function converts it."""
+    for call in script.all(ast.Call):
+        match call:
+            case ast.Call(
+                func=ast.Attribute(value=ast.Name(id="json"), attr="dump" | "dumps"), args=[given, *_]
+            ):
+                names = {keyword.arg for keyword in call.keywords}
+            case _:
+                continue
+        if names.isdisjoint({"default", "cls", None}) and not is_tried(script, call, _REFUSES):
+            yield from _instances(script, given)
+
+
+def _instances(script: Script, node: ast.expr) -> Iterator[tuple[ast.expr, str]]:
+    """The parts of a literal, or the whole, that surely are instances of classes of the API."""
+    match node:
+        case ast.Dict(values=parts) | ast.List(elts=parts) | ast.Tuple(elts=parts):
+            for part in parts:
+                yield from _instances(script, part)
+        case _:
+            kinds = members(script.type_of(node) or UNKNOWN)
+            if all(isinstance(kind, Instance) and kind.sure for kind in kinds):
+                yield node, next(kind.cls for kind in kinds if isinstance(kind, Instance))
 
 
 def _of_ranges(script: Script) -> Iterator[tuple[ast.expr, str]]:
