@@ -41,6 +41,7 @@ UNITS, TOPICS = range(2)
 DocumentKind = Literal["data", "code", "node", "index", "rarely asked", "removing"]
 DOCUMENT_KINDS: tuple[DocumentKind, ...] = ("data", "code", "node", "index", "rarely asked", "removing")
 _JSON = json.JSONEncoder(ensure_ascii=False, separators=(",", ":"))
+BY_MODEL = "AI summary: "  # stands before what a language model wrote: it is not Blender's own word
 POSTING_BYTES = 6  # a number as uint32, a weight as float16
 _LITTLE_KEPT = "PRAGMA cache_size = -256"  # KB: the system keeps the file, from which pages are read as fast
 

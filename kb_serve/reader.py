@@ -502,6 +502,15 @@ class BaseReader:
         rows: list[tuple[str, str]] = self.rows("SELECT version, lacked FROM since WHERE path = ?", path)
         return rows[0] if rows else ("", "")
 
+    def gone_in(self, version: str) -> list[str]:
+        """Paths of the symbols that a version was the first to lack."""
+        return [row[0] for row in self.rows("SELECT path FROM removed WHERE gone = ? ORDER BY path", version)]
+
+    def new_in(self, version: str) -> list[str]:
+        """Paths of the symbols that a version was the first to have."""
+        sql = "SELECT path FROM since WHERE version = ? AND lacked = '' ORDER BY path"
+        return [row[0] for row in self.rows(sql, version)]
+
     def uses(self, path: str) -> list[Use]:
         """The clearest uses of a symbol in Blender's own scripts and the guides, best first."""
         sql = "SELECT file, line, code FROM uses WHERE path = ? ORDER BY rank"

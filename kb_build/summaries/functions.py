@@ -12,12 +12,13 @@ from dataclasses import replace
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
+from kb_build.schema import BY_MODEL
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from kb_build.symbols.records import Symbol
 
-BY_MODEL = "AI summary: "  # what a language model wrote is not Blender's own word
 FILE = "functions.jsonl"
 
 

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING, Literal
 
 from kb_build.index.analysis import stems_of
 from kb_build.symbols.api_names import TYPES
-from kb_serve.answer.budget import AnswerBlock
+from kb_serve.answer.budget import AnswerBlock, tokens
+from kb_serve.answer.changes import changes_of, version_asked_about
 from kb_serve.answer.drafts import Draft, draft_of, paged, with_notes
 from kb_serve.answer.facts.asked_values import asked_of, asked_words
 from kb_serve.answer.hit_blocks import HitBlocks
 from kb_serve.answer.hit_lines import NAMES, HitLines
 from kb_serve.answer.hits import hits_of
 from kb_serve.answer.known.practice import Practice
+from kb_serve.answer.pages import MANUALS_WORDS
 from kb_serve.answer.render import MarkdownRenderer
 from kb_serve.answer.said_twice import is_said
 from kb_serve.answer.topic.overview import STEPS, Topics
@@ -36,6 +38,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.several import QuestionPart
 
+_LONG_WORDS = 250  # tokens of the manual's words on a symbol from which on other names go before them
 _KNOWN_OF = 3  # hits for a description among which what one has to know of them is looked for
 _NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
 _SETTINGS = 2  # of a topic that are hits before its classes
@@ -88,6 +91,8 @@ class AnswerComposer:
         """The answer to a text of whose code ``told`` is said as well."""
         ranking = self._ranker.rank(text, limit)
         ranking.notes = [note for note in ranking.notes if not is_said(note, told)]
+        if version := version_asked_about(text, self._reader):
+            return self._changes(version, limit)
         is_name = (" " not in text or "[" in text) and self._reader.entry(text)
         topic = "" if is_name else self._topics.find(text)
         if topic:
@@ -115,6 +120,12 @@ class AnswerComposer:
             blocks = self._named(hits, rows, text, names, members)
             return draft_of("page" if hits[0].is_page else "schema", hits, notes, blocks)
         return draft_of("candidates", hits, notes, self._found(hits, rows, asked, members))
+
+    def _changes(self, version: str, limit: int) -> Draft:
+        """What a version changed as a whole."""
+        changes = changes_of(version, self._reader)
+        hits = hits_of(_in_given_order(changes.ids[:limit], "topic"), self._reader)
+        return draft_of("candidates", hits, (), changes.blocks)
 
     def _asked_members(
         self, hit: Hit, rows: Sequence[RankedId], asked: Sequence[str]
@@ -159,8 +170,7 @@ class AnswerComposer:
         whole = self._blocks.whole(hits[0], rows[0], asked_of((), arguments if given else ()))
         yield from islice(whole, 1)
         yield from members
-        yield from whole
-        yield from self._lines.further(hits[1:], rows[1:])
+        yield from _names_before_long(whole, [*self._lines.further(hits[1:], rows[1:])])
 
     def _found(
         self,
@@ -270,3 +280,21 @@ def _is_told(path: str, text: str) -> bool:
     """Whether a text has a name: the path, or its last part as code and its owner."""
     owner, _, name = path.removeprefix(TYPES).rpartition(".")
     return path in text or (bool(owner) and f"`{name}`" in text and f"`{owner}`" in text)
+
+
+def _names_before_long(whole: Iterable[AnswerBlock], others: Sequence[AnswerBlock]) -> Iterator[AnswerBlock]:
+    """The blocks of what a query names, with what else was found; the names of that go before a long text of the
+    manual: whoever asks for several wants these, and what it says can be read on.
+    """
+    late: list[AnswerBlock] = []
+    for block in whole:
+        is_long = block.name == MANUALS_WORDS and tokens(block.text) > _LONG_WORDS
+        if is_long and others:
+            late.append(block)
+        else:
+            yield block
+    if late:
+        yield from (block for block in others if block.name == NAMES)
+        yield from late
+        others = [block for block in others if block.name != NAMES]
+    yield from others

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.pages.definitions import with_names
+from kb_build.schema import BY_MODEL
 from kb_build.symbols.lines import first_sentence
 from kb_serve.answer.budget import AnswerBlock
 
@@ -18,7 +19,7 @@ _SHORT_PAGE = 80  # letters
 _OUTLINE = 16  # sections that a heading lists
 # What the manual says of a setting may be true of one engine only.
 ENGINES = {"render/eevee/": "EEVEE", "render/cycles/": "Cycles", "render/workbench/": "Workbench"}
-_BY_MODEL = "AI summary: "  # what a language model wrote is not Blender's own word
+MANUALS_WORDS = "the manual's words"  # what the block is called
 
 
 def page_blocks(slug: str, reader: BaseReader, anchor: str = "") -> Iterator[AnswerBlock]:
@@ -62,7 +63,7 @@ def passage_block(path: str, reader: BaseReader) -> Iterator[AnswerBlock]:
     slug, headings, text = reader.passage_text(path)
     if text:
         engine = next((f"{name} › " for start, name in ENGINES.items() if slug.startswith(start)), "")
-        yield AnswerBlock(f"**In the manual** ({engine}{headings})\n{text}", "the manual's words")
+        yield AnswerBlock(f"**In the manual** ({engine}{headings})\n{text}", MANUALS_WORDS)
 
 
 def said_of(page: PageEntry, reader: BaseReader) -> str:
@@ -78,7 +79,7 @@ def own_summary(page: PageEntry) -> str:
     said = page.summary.removeprefix(page.title).lstrip(". ")
     if not said or said.startswith("Contents: "):
         return ""
-    return page.summary if page.summary_method == "extractive" else f"{_BY_MODEL}{page.summary}"
+    return page.summary if page.summary_method == "extractive" else f"{BY_MODEL}{page.summary}"
 
 
 def _beside(names: Mapping[tuple[int, int], str], section: int, line: int) -> str:

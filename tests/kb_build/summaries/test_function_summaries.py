@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 from told_by_blender import told_by_blender
 
+from kb_build.schema import BY_MODEL
 from kb_build.summaries.functions import (
-    BY_MODEL,
     function_digest,
     load_function_summaries,
     with_function_summaries,

@@ -73,7 +73,8 @@ _JSON = [
     for value in (
         "ob.location", "list(ob.location)", "{'a': ob.location}", "[ob.location]", "[*ob.location]", "ob", "ob.name",
         "(1, ob.color)", "tuple(ob.color)", "ob.matrix_world", "ob, default=str", "ob.location.x",
-        "{'a': {'b': ob.data}}", "ob['kept'] if 'kept' in ob else 1", "scene.frame_current", "[list(row) for row in ob.matrix_world]",
+        "{'a': {'b': ob.data}}", "ob['kept'] if 'kept' in ob else 1", "scene.frame_current",
+        "[list(row) for row in ob.matrix_world]",
     )
 ]  # fmt: skip
 _KEPT = (

@@ -316,3 +316,9 @@ def test_the_footer_says_where_the_last_line_goes_on(kb: KnowledgeBase) -> None:
         last = FOOTER.sub("", part.text).split("\n")[-1]
         assert "".join(last.split()) not in lines
         assert "".join(last.split()) in everything
+
+
+def test_other_names_that_are_asked_for_go_before_a_long_text_of_the_manual(kb: KnowledgeBase) -> None:
+    text = kb.query("simple_deform deform_method twist angle axis").text
+    assert 0 < text.index("`bpy.types.SimpleDeformModifier.angle`") < text.index("**In the manual**")
+    assert "`bpy.types.SimpleDeformModifier.deform_axis`" in text

@@ -27,3 +27,23 @@ def test_each_is_dated(kb: KnowledgeBase, query: str, gone: list[str]) -> None:
 
 def test_names_that_this_blender_has_are_not_lost(kb: KnowledgeBase) -> None:
     assert not any("does not exist" in note for note in kb.query("hide_render, hide_viewport").notes)
+
+
+@pytest.mark.parametrize(
+    ("question", "gone", "instead"),
+    [
+        ("composite node", "CompositorNodeComposite", "NodeGroupOutput"),
+        ("velvet bsdf node", "ShaderNodeBsdfVelvet", "ShaderNodeBsdfSheen"),
+    ],
+)
+def test_a_node_that_is_gone_is_known_by_what_people_call_it(
+    kb: KnowledgeBase, question: str, gone: str, instead: str
+) -> None:
+    answer = kb.query(question)
+    assert any(note.startswith(f"`bpy.types.{gone}` does not exist") for note in answer.notes)
+    assert answer.hits[0].id == f"bpy.types.{instead}"
+
+
+@pytest.mark.parametrize("question", ["math node", "glossy bsdf node", "noise texture node"])
+def test_a_node_that_is_there_is_not_lost(kb: KnowledgeBase, question: str) -> None:
+    assert not any("does not exist" in note for note in kb.query(question).notes)

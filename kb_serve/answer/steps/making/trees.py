@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from kb_serve.answer.steps.scene.new_scene import NewScene
 
 SHADER_TREE = f"{TYPES}ShaderNodeTree"
+TEXTURE_TREE = f"{TYPES}TextureNodeTree"
 WORLD_END = f"{TYPES}ShaderNodeOutputWorld"
 # What is in the tree of a world rather than of a material.
 OF_WORLDS = frozenset(
@@ -26,7 +27,7 @@ OF_WORLDS = frozenset(
     }
 )
 # Trees that cannot be assigned: what has one of its own.
-_EMBEDDED = {SHADER_TREE: (f"{TYPES}Material", "node_tree")}
+_EMBEDDED = {SHADER_TREE: (f"{TYPES}Material", "node_tree"), TEXTURE_TREE: (f"{TYPES}Texture", "node_tree")}
 _WORLD = f"{TYPES}World"
 _USUAL_TREE = f"{TYPES}GeometryNodeTree"
 EMBEDDED_TREES = frozenset(_EMBEDDED)

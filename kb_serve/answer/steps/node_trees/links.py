@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.symbols.api_names import SIDES, TYPES
-from kb_serve.answer.steps.making.trees import SHADER_TREE
+from kb_serve.answer.steps.making.trees import SHADER_TREE, TEXTURE_TREE
 from kb_serve.answer.steps.node_trees.shader_links import ShaderLinks
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from kb_serve.answer.steps.scene.new_scene import NewScene
 
 _GROUP_END = "group_output"
+_TEXTURE_END = 'tree.nodes["Output"].inputs["Color"]'  # which a new texture's tree has
 
 
 class _Group(NamedTuple):
@@ -84,9 +85,12 @@ class NodeLinks:
         variable = self._scene.variables.of(node)
         group = _GROUPS.get(tree)
         if group is None:
-            if taken := self._sockets.first(node, "outputs", ()):
+            taken = self._sockets.first(node, "outputs", ())
+            end = _TEXTURE_END if tree == TEXTURE_TREE else f"{_GROUP_END}.inputs[0]"
+            if taken and tree != TEXTURE_TREE:
                 yield from self._ending(tree, None)
-                yield f"`tree.links.new({variable}.{taken}, {_GROUP_END}.inputs[0])`"
+            if taken:
+                yield f"`tree.links.new({variable}.{taken}, {end})`"
             return
         given = self._sockets.first(node, "inputs", group.given)
         taken = self._sockets.first(node, "outputs", group.taken)

@@ -12,6 +12,7 @@ from kb_serve.reader import PROPERTIES
 from kb_serve.recognise.message_patterns import is_message
 from kb_serve.recognise.names.named.addresses import find_page
 from kb_serve.recognise.names.named.enum_values import is_quoted_value, is_value
+from kb_serve.recognise.names.named.lost_nodes import lost_nodes
 from kb_serve.recognise.recognition import WHOLE_LABEL
 
 if TYPE_CHECKING:
@@ -99,6 +100,8 @@ class Spellings:
             return  # ``'EMITTER'`` is not the page of emitters
         if self._path(text, recognition):
             return
+        if not is_message(query) and _CODE.isdisjoint(query):
+            self._lost_nodes(text.lower().split(), recognition)
         if slug := find_page(text, self._reader):
             recognition.add(slug, 1.0, "exact")
             return
@@ -255,6 +258,12 @@ class Spellings:
             lost = self._lost(name)
             for removed in lost if len(lost) <= _FEW else self._lost_members(name):
                 recognition.add_removed(removed)
+
+    def _lost_nodes(self, words: Sequence[str], recognition: Recognition) -> None:
+        """Adds the nodes that are gone, by what people call them."""
+        paths = lost_nodes(words, self._reader) if len(words) <= _MOST_WORDS else ()
+        for removed in filter(None, map(self._removed.of_path, paths)):
+            recognition.add_removed(removed)
 
     def _lost(self, name: str) -> list[RemovedSymbol]:
         """What other versions alone have by a name of several words, as a path or as a member of some class."""
