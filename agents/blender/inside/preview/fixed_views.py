@@ -17,6 +17,7 @@ from ..physics.caches import unbaked
 from .framing import (
     CLOSE,
     LOOSE,
+    SMALLEST,
     VIEWS,
     WIDE,
     BoundingBox,
@@ -26,6 +27,7 @@ from .framing import (
     fit,
     turn_of,
     turned_views,
+    without_size,
 )
 from .room_cutaway import RoomCutaway
 from .room_detection import find_room, large_pieces
@@ -42,7 +44,7 @@ _SHADOWED = 300_000  # faces; of more, shadows take seconds
 _SCATTERED = 12  # faces of dots and strands cost this many times as much as a solid's
 _IN_ROOM = 0.4  # slant of the light in a room, low so that the walls' shadows do not cover its content
 _FILE = ".preview-{}.png"
-_EXTREMES = (1e-9, 1e9)  # metres across that can still be drawn
+_LARGEST = 1e9  # metres across that can still be drawn
 _FARTHEST = 1000 * REACH  # of a camera from its subject
 _CAMERA_WIDER = 2  # times a panel that the camera's picture may be wide
 
@@ -104,7 +106,10 @@ def _subjects(scene, subject, names, notes):
         known = {name: {name} for name in drawn} | tagged
         if unknown := [name for name in names if not known.get(name)]:
             notes.append(f"Nothing to see of {_listed(unknown)}.")
-        return {name: known[name] for name in names if known.get(name)}
+        found = {name: known[name] for name in names if known.get(name)}
+        if points := without_size(subject.pieces, found):
+            notes.append(f"Without any size at this frame: {_listed(points)}.")
+        return found
     ground = scene.collection.children_recursive
     ground = {child.name for one in ground if one.name == GROUND for child in one.children_recursive}
     return {name: owners for name, owners in tagged.items() if owners and name not in ground}
@@ -252,8 +257,13 @@ class PreviewRenderer:
         self.whole = BoundingBox.around(boxes[name] for name in framed)
         self._margin = WIDE if len(wanted) < len(boxes) else LOOSE if beyond else CLOSE
         across = self.whole.diagonal
-        if not _EXTREMES[0] <= across <= _EXTREMES[1]:
-            raise Refused(f"It is {across:.3g} m across, too {'small' if across < 1 else 'large'} to draw.")
+        if across < SMALLEST:
+            raise Refused(
+                f"There is nothing to draw at frame {bpy.context.scene.frame_current}: all of it lies in one point, as "
+                "what is scaled to 0. Ask for a frame at which it has a size."
+            )
+        if across > _LARGEST:
+            raise Refused(f"It is {across:.3g} m across, too large to draw.")
         if beyond:
             notes.append(f"Larger than the pictures: {_listed(beyond)}.")
         for name in outside[:_NAMED]:
@@ -331,7 +341,7 @@ class PreviewRenderer:
     def close_view(self, owners):
         """The three-quarter picture of some objects (names) among all others; none if they are large in all views."""
         mine = [piece for piece, _ in self._placed if piece.owner in owners]
-        if not mine or BoundingBox.around(mine).diagonal > _SMALL * self.whole.diagonal:
+        if not mine or not SMALLEST <= BoundingBox.around(mine).diagonal <= _SMALL * self.whole.diagonal:
             return
         name, towards, up = next(view for view in VIEWS if view[0] == "three-quarter")
         most = max(8, _OUTLINE // len(mine))

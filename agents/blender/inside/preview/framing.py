@@ -21,6 +21,7 @@ _VAST_TIMES = 6.0  # against the middle one of all others: of what is larger, a 
 _PATCH, _LEAST_PATCH = 0.5, 0.02  # width of a patch, in diagonals of that other one, and in its own
 _UPRIGHT = 0.3  # how much of an axis is level, below which it says nothing of the turn
 _TURNED = 0.01  # radians
+SMALLEST = 1e-9  # metres across that can still be drawn
 
 
 class BoundingBox:
@@ -82,6 +83,16 @@ def boxes_of(pieces):
     for piece in pieces:
         grouped.setdefault(piece.owner, []).append(piece)
     return {owner: BoundingBox.around(group) for owner, group in grouped.items()}
+
+
+def without_size(pieces, groups):
+    """The names of those groups (sets of owners, by name) that lie in one point, as what is scaled to 0."""
+    boxes = boxes_of(pieces)
+    return [
+        name
+        for name, owners in groups.items()
+        if BoundingBox.around(boxes[owner] for owner in owners).diagonal < SMALLEST
+    ]
 
 
 def choose_framed(boxes, templates=()):

@@ -13,7 +13,7 @@ from ..blend.names import quoted
 from ..blend.protocol_tags import object_collections
 from ..digests.still_digest import digest_of, lasting_digest
 from .fixed_views import SCENE, PreviewRenderer, at_frame, copy_of, grouped_boxes, note_missing
-from .framing import VIEWS, BoundingBox, boxes_of, patch_of
+from .framing import VIEWS, BoundingBox, boxes_of, patch_of, without_size
 from .lit_studio import LitStudio
 from .scene_copy import DRAWABLE
 
@@ -236,7 +236,11 @@ def _present(groups, subject, notes):
     named = [name for name, owners in present.items() if not owners and _has_surface(groups[name])]
     if named:
         notes.append(f"Nothing to see of {quoted(named, _NAMED)}.")
-    return {name: owners for name, owners in present.items() if owners}
+    present = {name: owners for name, owners in present.items() if owners}
+    points = without_size(subject.pieces, present)
+    if points:
+        notes.append(f"Not shown alone, without any size at this frame: {quoted(points, _NAMED)}.")
+    return {name: owners for name, owners in present.items() if name not in points}
 
 
 def _has_surface(owners):

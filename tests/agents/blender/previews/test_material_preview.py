@@ -186,6 +186,13 @@ def test_gas_is_said_to_be_drawn_without_its_shader(session: LiveSession) -> Non
     assert told not in session.use(material_preview.TOOL, show="scene", width=64).text
 
 
+def test_what_has_no_size_yet_is_named_and_the_others_are_shown(session: LiveSession) -> None:
+    build(session, "box('Mug', (0, 0, 0)); box('Seed', (3, 0, 0), (0, 0, 0))")
+    result = session.use(material_preview.TOOL, show="objects")
+    assert [one["name"] for one in result.data["objects"]] == ["Mug"]
+    assert "Not shown alone, without any size at this frame: 'Seed'." in result.text
+
+
 def test_an_unknown_name_is_refused_with_the_nearest(session: LiveSession) -> None:
     build(session, CLOSED_ROOM)
     with pytest.raises(Refusal, match="Nearest: 'The Chest 2'"):

@@ -268,6 +268,15 @@ def test_names_of_subjects_that_are_not_there_are_told(session: LiveSession) -> 
     assert "Nothing to see of 'Jug'" in result.text
 
 
+def test_a_subject_that_has_no_size_yet_is_told_and_hides_nothing(session: LiveSession) -> None:
+    build(session, "box('Mug', (0, 0, 0)); box('Seed', (3, 0, 0), (0, 0, 0))")
+    views = Views(session, "scene", subjects=["Mug", "Seed"])
+    assert "three-quarter" in views.by_name
+    views = Views(session, "scene", subjects=["Seed"])
+    assert "subjects" not in views.by_name
+    assert "Without any size at this frame: 'Seed'." in views.data["notes"]
+
+
 def test_the_camera_sees_no_axes(session: LiveSession) -> None:
     build(
         session,

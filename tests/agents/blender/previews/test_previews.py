@@ -251,7 +251,7 @@ def test_a_collection_without_its_role_is_shown_with_a_note(session: LiveSession
         ("bpy.context.scene.collection.objects.link(bpy.data.objects.new('It', None))", "no geometry.*EMPTY"),
         ("box('It').location.x = float('nan')", "transform is not finite"),
         ("box('It').data.vertices[0].co.x = float('inf')", "coordinates that are not finite"),
-        ("box('It', size=(0, 0, 0))", "0 m across"),
+        ("box('It', size=(0, 0, 0))", "at frame 1: all of it lies in one point"),
         ("box('It').data.clear_geometry()", "Without faces"),
         ("box('It', size=(1e11, 1, 1))", "too large"),
     ],
