@@ -11,11 +11,12 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from agents.blender.sheets.contact_sheet import GAP
 from agents.blender.sheets.motion_plot import lanes_of
-from agents.blender.sheets.motion_reply import ActorMotion, MotionReply, PhaseMotion
+from agents.blender.sheets.motion_reply import ActorMotion, Contact, MotionReply, PhaseMotion
 from agents.blender.sheets.motion_sheet_image import WIDTH, draw_sheets
 from agents.blender.sheets.worker_pictures import taken_picture
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
 from agents.blender.tools.preview_files import FOLDER
+from simworlds.counting import format_list
 from simworlds.sandbox.replies import Frame
 
 if TYPE_CHECKING:
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 MOST_ACTORS, MOST_PICTURES, MOST_PHASES = 8, 12, 24
 MOST_AT_ONCE = 3  # phases that overlap
+_TOLD, _NAMED = 8, 12  # contacts of a phase: with their frames, and by name
 _MEASURED = {
     "vertices": "mean of its surface",
     "particles": "mean of its particles",
@@ -195,7 +197,7 @@ def _row(phase: PhaseMotion) -> str:
     if not phase.present:
         return f"| {name} | {phase.start}–{phase.end} | absent | | | | | |"
     way = ", ".join(f"{part:+.2f}" for part in phase.displacement_vector)
-    touches = "; ".join(f"{touch.partner} {touch.when}" for touch in phase.contacts[:4])
+    touches = _touches(phase.contacts)
     peak = "" if phase.peak_speed is None else f"{phase.peak_speed:.3g} ({phase.peak_frame})"
     final = "" if phase.final_speed is None else f"{phase.final_speed:.3g}"
     turn = "" if phase.turn is None else f"{phase.turn:.0f}"
@@ -203,6 +205,13 @@ def _row(phase: PhaseMotion) -> str:
         f"| {name} | {phase.start}–{phase.end} | {phase.displacement:.3g} ({way}) | {phase.path_length:.3g} | {peak} | "
         f"{final} | {turn} | {touches} |"
     )
+
+
+def _touches(contacts: list[Contact]) -> str:
+    """What is touched, with its frames; of many, the last only by their names."""
+    told = "; ".join(f"{touch.partner} {touch.when}" for touch in contacts[:_TOLD])
+    more = [touch.partner for touch in contacts[_TOLD:]]
+    return f"{told}; also {format_list(more, _NAMED)}" if more else told
 
 
 TOOL = BlenderTool(

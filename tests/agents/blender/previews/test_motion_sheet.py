@@ -351,6 +351,15 @@ def test_lanes_hold_phases_that_follow_one_another() -> None:
     assert lanes_of([]) == []
 
 
+def test_all_that_is_touched_in_a_phase_is_told(session: LiveSession) -> None:
+    posts = (
+        "bpy.ops.mesh.primitive_cube_add(size=1, location=(at, 1, 0)); bpy.context.object.name = f'Post {at}'"
+    )
+    session.run(SLIDE + f"for at in range(0, 11): {posts}")
+    text = session.use(TOOL, actors=["Sledge"], frames=[1, 49]).text
+    assert all(f"Post {at}" in text for at in range(11))
+
+
 def test_the_scene_is_left_as_it_was(session: LiveSession) -> None:
     session.run(FALL + "for f in range(1, 8): s.frame_set(f)\ns.frame_set(7, subframe=0.25)")
     before = session.run(STATE)
