@@ -95,7 +95,10 @@ class PhaseMotion(_Reply):
 
 
 class ActorMotion(_Reply):
-    """The motion of one actor, measured at ``frames``."""
+    """The motion of one actor, measured at ``frames``.
+
+    ``keyframes``: the frames with its keys among them; ``keyed``: the first and last of all its keys.
+    """
 
     name: Text
     kind: Text
@@ -106,6 +109,7 @@ class ActorMotion(_Reply):
     speed_of: Text
     caches: list[CacheState] = Field(max_length=1000)
     keyframes: list[Frame] = Field(max_length=100_000)
+    keyed: tuple[Frame, Frame] | None = None
     phases: list[PhaseMotion] = Field(min_length=1, max_length=_MOST_PHASES)
     frames: list[Frame] = Field(min_length=1, max_length=_MOST_FRAMES)
     centres: list[Vector | None] = Field(max_length=_MOST_FRAMES)

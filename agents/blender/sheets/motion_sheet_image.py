@@ -100,9 +100,7 @@ def _heading(actor: ActorMotion) -> Image.Image:
     x: float = WIDTH
     chips = [(f"{cache.label}: {_state(cache)}", state_colour(_state(cache))) for cache in actor.caches[:3]]
     if not actor.caches:
-        chips = [
-            ("keyframed, no physics" if actor.keyframes else "no physics, no keyframes", state_colour(""))
-        ]
+        chips = [("keyframed, no physics" if actor.keyed else "no physics, no keyframes", state_colour(""))]
     for text, colour in reversed(chips):
         wide = text_width(text, _CHIP.size) + 16
         if x - wide < WIDTH / 3:

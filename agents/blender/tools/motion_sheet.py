@@ -16,7 +16,7 @@ from agents.blender.sheets.motion_sheet_image import WIDTH, draw_sheets
 from agents.blender.sheets.worker_pictures import taken_picture
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
 from agents.blender.tools.preview_files import FOLDER
-from simworlds.counting import format_list
+from simworlds.counting import counted, format_list
 from simworlds.sandbox.replies import Frame
 
 if TYPE_CHECKING:
@@ -187,9 +187,18 @@ def _kind(actor: ActorMotion) -> str:
 
 def _states(actor: ActorMotion) -> str:
     words = [f"{cache.label}: {cache.state}, {cache.start}–{cache.end}" for cache in actor.caches[:6]]
-    if actor.keyframes:
-        words.append(f"{len(actor.keyframes)} keyed frames, {actor.keyframes[0]}–{actor.keyframes[-1]}")
+    if actor.keyed is not None:
+        words.append(_keys(actor.keyframes, actor.keyed))
     return "; ".join(words) or "no physics, no keyframes"
+
+
+def _keys(here: list[int], keyed: tuple[int, int]) -> str:
+    """How many keys there are in these frames, and from where to where they are in all."""
+    reach = f"from {keyed[0]} to {keyed[1]}" if keyed[1] > keyed[0] else f"at {keyed[0]}"
+    if not here:
+        return f"keyed {reach}, at none of these frames"
+    told = f"{counted(len(here), 'keyed frame')}, {here[0]}" + (f"–{here[-1]}" if len(here) > 1 else "")
+    return told if keyed == (here[0], here[-1]) else f"{told} (in all {reach})"
 
 
 def _row(phase: PhaseMotion) -> str:

@@ -4,13 +4,13 @@
 from ..blend.fcurves import curves_of
 
 
-def keyed_frames(objects, start, end):
-    """Frames from ``start`` to ``end`` with a key of these objects, their parents, armatures, data or shape keys."""
+def keyed_frames(objects):
+    """The frames with a key of these objects, their parents, armatures, data or shape keys, in order."""
     frames = set()
     for block in _animated(objects):
         for curve in curves_of(block):
             frames.update(round(point.co[0]) for point in curve.keyframe_points)
-    return sorted(frame for frame in frames if start <= frame <= end)
+    return sorted(frames)
 
 
 def _animated(objects):

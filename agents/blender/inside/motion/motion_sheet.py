@@ -22,6 +22,7 @@ _USUAL = 7  # pictures without phases
 _IN_A_ROW, _WIDEST = 8, 300  # pictures, and pixels of one
 _MEASURED = 600  # frames; longer ranges are measured at a stride
 _LONGEST = 20_000
+_FARTHEST = 1_000_000  # a frame; keys can be farther
 _RAYS = 16  # from an actor to the viewer, to see whether it is hidden
 
 
@@ -198,6 +199,7 @@ class _PictureStrips:
 def _actor_entry(track, span):
     actor = track.actor
     names = [obj.name for obj in actor.objects]
+    keyed = keyed_frames(actor.objects)
     return {
         "name": actor.name,
         "kind": actor.kind,
@@ -206,7 +208,8 @@ def _actor_entry(track, span):
         "measured": actor.measured,
         "deforms": track.deforms,
         "speed_of": track.speed_name,
-        "keyframes": keyed_frames(actor.objects, *span),
+        "keyframes": [frame for frame in keyed if span[0] <= frame <= span[1]],
+        "keyed": [max(-_FARTHEST, min(_FARTHEST, end)) for end in (keyed[0], keyed[-1])] if keyed else None,
         "frames": track.frames,
         "centres": [centre and [round(part, 5) for part in centre] for centre in track.centres],
         "displacements": track.displacements(),

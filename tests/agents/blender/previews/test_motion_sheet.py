@@ -360,6 +360,17 @@ def test_all_that_is_touched_in_a_phase_is_told(session: LiveSession) -> None:
     assert all(f"Post {at}" in text for at in range(11))
 
 
+def test_keys_before_and_after_the_frames_are_told(session: LiveSession) -> None:
+    session.run(SLIDE)
+    text = session.use(TOOL, actors=["Sledge"], frames=[20, 30]).text
+    assert "keyed from 1 to 49, at none of these frames" in text
+    assert "no keyframes" not in text
+    assert (
+        "1 keyed frame, 1 (in all from 1 to 49)" in session.use(TOOL, actors=["Sledge"], frames=[1, 30]).text
+    )
+    assert "2 keyed frames, 1–49\n" in session.use(TOOL, actors=["Sledge"], frames=[1, 49]).text
+
+
 def test_the_scene_is_left_as_it_was(session: LiveSession) -> None:
     session.run(FALL + "for f in range(1, 8): s.frame_set(f)\ns.frame_set(7, subframe=0.25)")
     before = session.run(STATE)
