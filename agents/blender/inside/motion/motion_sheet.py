@@ -7,6 +7,7 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
+from ..blend.names import quoted
 from ..physics.caches import of_objects
 from ..preview.frame_pictures import FramePictures, PictureJob
 from .actors import dots_of, resolve
@@ -23,6 +24,7 @@ _IN_A_ROW, _WIDEST = 8, 300  # pictures, and pixels of one
 _MEASURED = 600  # frames; longer ranges are measured at a stride
 _LONGEST = 20_000
 _FARTHEST = 1_000_000  # a frame; keys can be farther
+_NAMED = 6
 _RAYS = 16  # from an actor to the viewer, to see whether it is hidden
 
 
@@ -74,7 +76,7 @@ def motion_sheet(arguments, report):
                 **_actor_entry(track, (first, last)),
                 "phases": [_phase_entry(track, number, phase, contacts) for phase in phases],
                 "caches": [state for _, state in caches[number]],
-                "notes": notes_on(track, caches[number], pictures.missing, scene),
+                "notes": [*notes_on(track, caches[number], pictures.missing, scene), *strips.notes(number)],
                 "columns": strips.columns,
                 "views": strips.views[number],
             }
@@ -156,6 +158,7 @@ class _PictureStrips:
         tile = (arguments["width"] - arguments["gap"] * (self.columns - 1)) // self.columns - 2
         self._tile = min(tile, _WIDEST)
         self.views = [[] for _ in tracks]
+        self._cut = [{} for _ in tracks]  # names of what pictures show cut away, with their frames
         self.any = False
         self._jobs = {frame: [] for frame in sampled}
 
@@ -183,14 +186,29 @@ class _PictureStrips:
         states = [track.actor.state_at(graph) for track in self._tracks]
         for track, state in zip(self._tracks, states, strict=True):
             track.check(frame, state)
-        jobs = []
+        jobs, drawn = [], []
         for number, view, path in self._jobs[frame]:
             names = {obj.name for obj in self._tracks[number].actor.objects}
             state = states[number]
             points = state.sample(_RAYS) if state is not None else []
             jobs.append(PictureJob(names, points, view, path, dots_of(self._tracks[number].actor, state)))
-        for number, _ in enumerate(pictures.render(jobs), 1):
-            progress.part(number / len(jobs), f"drawing frame {frame}")
+            drawn.append(number)
+        for done, _ in enumerate(pictures.render(jobs), 1):
+            progress.part(done / len(jobs), f"drawing frame {frame}")
+        for number, job in zip(drawn, jobs, strict=True):
+            for name in job.cut:
+                self._cut[number].setdefault(name, []).append(frame)
+
+    def notes(self, number):
+        """What is cut away in the pictures of an actor, and in which of them."""
+        cut = self._cut[number]
+        if not cut:
+            return []
+        frames = sorted({frame for at in cut.values() for frame in at})
+        return [
+            f"Cut away in its pictures, since it would hide it: {quoted(sorted(cut), _NAMED)} "
+            f"(frame{'s' * (len(frames) > 1)} {', '.join(map(str, frames))})."
+        ]
 
 
 # Entries

@@ -23,10 +23,11 @@ _MARK_RADIUS = 1.8  # pixels
 
 class PictureJob:
     """A picture to render: ``objects`` (names) stand out in it; ``points`` are some of theirs. Places that are
-    ``marks`` get a dot, as large from afar as close by."""
+    ``marks`` get a dot, as large from afar as close by. ``cut``: names of what hides them and was cut away."""
 
     def __init__(self, objects, points, view, path, marks=()):
         self.objects, self.points, self.view, self.path, self.marks = objects, points, view, path, marks
+        self.cut = ()
 
 
 class FramePictures:
@@ -67,27 +68,29 @@ class FramePictures:
         """From where on objects are shown, in metres in front of the view's centre."""
         view = job.view
         before = view.depth + _SLACK * view.width
-        hidden = sum(self._is_hidden(graph, job, point, before) for point in job.points)
-        if hidden <= len(job.points) / 2:
+        hiders = [self._hider(graph, job, point, before) for point in job.points]
+        hiders = [name for name in hiders if name is not None]
+        if len(hiders) <= len(job.points) / 2:
             return before
+        job.cut = sorted(set(hiders))
         # On a way towards the viewer, what hides it at its farthest may be behind it at its nearest.
         depths = [(point - view.centre).dot(view.axes[2]) for point in job.points]
         return min(view.depth, max(depths) + _SPARED * (max(depths) - min(depths)) + _MARGIN * view.width)
 
-    def _is_hidden(self, graph, job, point, before):
-        """Whether another object hides a point."""
+    def _hider(self, graph, job, point, before):
+        """The name of another object that hides a point; None without any."""
         view = job.view
         towards = view.axes[2]
         step = towards * (1e-4 * view.width)
         for _ in range(_PASSED):
             left = before - (point - view.centre).dot(towards)
             if left <= 0:
-                return False
+                return None
             hit, place, _, _, obj, _ = self._scene.ray_cast(graph, point + step, towards, distance=left)
             if not hit or obj.name not in job.objects:
-                return hit
+                return obj.name if hit else None
             point = place
-        return False
+        return None
 
 
 def _add_dots(studio, job):

@@ -395,6 +395,18 @@ def test_the_pictures_show_the_motion_in_one_fixed_frame(session: LiveSession) -
     assert again.pictures[0].path != found.pictures[0].path
 
 
+def test_what_is_cut_away_since_it_hides_an_actor_is_told(session: LiveSession) -> None:
+    screen = (
+        "bpy.ops.mesh.primitive_cube_add(size=1, location=(x, -3, 1)); w = bpy.context.object; "
+        "w.name = f'Screen {x}'; w.scale = (4, .1, 9)\n"
+    )
+    session.run(SLIDE + "for x in (0, 30):\n    " + screen)
+    found = session.use(TOOL, actors=["Sledge"], frames=[1, 49])
+    assert "since it would hide it: 'Screen 0' (frame 1)." in found.text
+    session.run("bpy.data.objects.remove(bpy.data.objects['Screen 0'])")
+    assert "Cut away" not in session.use(TOOL, actors=["Sledge"], frames=[1, 49]).text
+
+
 def test_what_is_in_a_closed_room_is_seen(session: LiveSession) -> None:
     session.run(
         SLIDE + "bpy.ops.mesh.primitive_cube_add(size=1)\nr = bpy.context.object\n"
