@@ -178,6 +178,8 @@ def _put_step(state: RunState, step: Step, *, instead_of: Step | None = None) ->
     stage = state.stage(step.stage) or StageRun(step.stage, "waiting")
     if not step.attempt:
         return _put(state, replace(stage, steps=put(stage.steps)))
+    if stage.state == "waiting":  # no event begins the last stage
+        stage = replace(stage, state="running")
     attempt = _attempt(stage, step.attempt)
     return _put_attempt(state, stage, replace(attempt, steps=put(attempt.steps)))
 

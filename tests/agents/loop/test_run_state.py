@@ -205,6 +205,18 @@ def test_a_stage_is_waiting_while_an_edits_file_is_judged_as_that_stage_will_be(
     assert run_state_after(tape.rows[:-2] + tape.rows[-1:]).state_of("light") == "running"
 
 
+def test_the_last_stage_runs_from_its_first_step_on_and_closes_with_the_run() -> None:
+    tape = Tape()
+    tape.began()
+    tape.simple_stage("light")
+    render = {"n": 1, "role": "runner", "stage": "render", "attempt": 1, "name": "blender_render"}
+    tape.add("tool.called", **render, input={})
+    assert run_state_after(tape.rows).state_of("render") == "running"
+    tape.add("rendered", round=1, kind="still", path="still.png")
+    tape.ended("done", "")
+    assert run_state_after(tape.rows).state_of("render") == "closed"
+
+
 def test_resumed_run_has_not_ended() -> None:
     tape = Tape()
     tape.began()
