@@ -27,6 +27,7 @@ _NAMED = 8
 _UNCHANGED = (
     "Not rendered again, since nothing that this still shows has changed since. What was said of it then:"
 )
+_STEPPED = "- Not baked, so stepped from the first frame: "
 _FAR = 1_000_000
 _Frame = Annotated[int, Field(ge=-_FAR, le=_FAR)]
 _Side = Annotated[int, Field(ge=4, le=8192)]
@@ -107,6 +108,7 @@ def _still(renderer: FrameRenderer, arguments: RenderArguments, call: Call, path
     kept = KeptStill(path, {"frame": frame, "shot": renderer.shot.settings, "looks": renderer.plan.looks})
     if arguments.keep and (said := kept.reply()):
         text, data = said
+        data["unbaked"] = [cache.label for cache in renderer.unbaked]
         shown = _shown([look_at(renderer.pictures, path, LARGEST_STILL)])
         return Result(f"{_UNCHANGED}\n{text}", data, shown)
     store = StillStore(path)
@@ -121,8 +123,13 @@ def _still(renderer: FrameRenderer, arguments: RenderArguments, call: Call, path
     data |= _measured(renderer, {frame: pictures[0]})
     text = _text(renderer, data, outcome)
     if arguments.keep:
-        kept.keep(text, data)
+        kept.keep(_of_any_time(text), data)
     return Result(text, data, _shown(pictures))
+
+
+def _of_any_time(text: str) -> str:
+    """What is said of a still, without what a bake changes and the picture does not show."""
+    return "\n".join(line for line in text.splitlines() if not line.startswith(_STEPPED))
 
 
 def _animation(
@@ -252,7 +259,7 @@ def _text(renderer: FrameRenderer, data: dict[str, Any], outcome: RenderOutcome)
         count = counted(len(outcome.dropped), "frame")
         lines.append(f"- To keep the time budget, {count} left out: {_format_frames(outcome.dropped)}.")
     if data["unbaked"]:
-        lines.append(f"- Not baked, so stepped from the first frame: {format_list(data['unbaked'], _NAMED)}.")
+        lines.append(f"{_STEPPED}{format_list(data['unbaked'], _NAMED)}.")
     lines += [f"- {line}" for line in data.pop("measured")]
     lines += [f"- {note}" for note in renderer.notes]
     lines += [f"- **{warning}**" for warning in data["warnings"]]

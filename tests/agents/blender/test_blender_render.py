@@ -152,6 +152,18 @@ def test_a_still_is_kept_while_it_would_look_the_same(session: LiveSession) -> N
     assert not render()[0]
 
 
+def test_a_still_that_is_kept_tells_nothing_of_bakes_as_they_were(session: LiveSession) -> None:
+    session.run(SCENE + DROP.replace("bpy.ops.ptcache.bake_all(bake=True)", ""))
+    arguments = {**SMALL, "keep": True, "frame": 1}
+    first = session.use(TOOL, None, **arguments)
+    assert "Not baked, so stepped" in first.text
+    session.run("bpy.ops.ptcache.bake_all(bake=True)")
+    again = session.use(TOOL, None, **arguments)
+    assert again.text.startswith(UNCHANGED)
+    assert "Not baked" not in again.text
+    assert again.data["unbaked"] == []
+
+
 @pytest.mark.parametrize("engine", ["cycles", "workbench"])
 def test_a_still_shows_what_the_camera_sees(session: LiveSession, engine: str) -> None:
     session.run(SCENE + "cube.location = (1, 0, -2)")
