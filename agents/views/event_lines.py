@@ -13,6 +13,7 @@ from agents.views.formatting import (
     describe_frames,
     describe_source,
     format_cost,
+    format_hard,
     format_time,
     stage_title,
 )
@@ -129,9 +130,7 @@ def _step(step: Step | None) -> list[str]:
 
 
 def _verified(event: events.Verified) -> list[str]:
-    verdict = (
-        "no hard finding" if event.ok else counted(event.hard, "hard finding") if event.hard else "undecided"
-    )
+    verdict = "no hard finding" if event.ok else ", ".join(format_hard(event)) or "undecided"
     soft = f", {counted(event.soft, 'soft finding')}" if event.soft else ""
     return [f"  verifier: {verdict}{soft}", *(f"    {line}" for line in format_findings(event, _FINDINGS))]
 
@@ -145,7 +144,8 @@ def format_findings(verified: events.Verified, most: int) -> list[str]:
         objects = " ".join(row.objects(2).split("\n"))
         measured = f" [{row.measured}]" if row.measured else ""
         lines.append(f"{' '.join(filter(None, [row.worst.rule + many, objects]))}: {row.message}{measured}")
-    return [*lines, *([f"and {len(folded) - most} more kinds"] if len(folded) > most else [])]
+    more = [f"and {counted(len(folded) - most, 'more kind')}"] if len(folded) > most else []
+    return [*lines, *more]
 
 
 def _edited(event: events.Edited) -> list[str]:

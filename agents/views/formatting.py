@@ -10,7 +10,7 @@ from simworlds.terminal.text import plain
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from agents.loop.record.events import FilmFitted
+    from agents.loop.record.events import FilmFitted, Verified
     from agents.loop.record.run_state import Attempt, RunState
     from simworlds.llm.messages import Usage
     from simworlds.llm.spending import SpendingRow
@@ -127,6 +127,14 @@ def describe_frames(rendered: int, film: FilmFitted | None) -> str:
     return f"{counted(film.frames, 'frame')}, {rendered} of them rendered and the others repeated"
 
 
+def format_hard(verified: Verified) -> list[str]:
+    """How many hard findings there are, and how many hard rules could not be decided; nothing of what there is none."""
+    unsure = sum(one.severity == "hard" and one.outcome != "broken" for one in verified.findings)
+    broken = max(0, verified.hard - unsure)
+    told = [counted(broken, "hard finding")] if broken else []
+    return [*told, *([f"{counted(unsure, 'hard rule')} undecided"] if unsure else [])]
+
+
 def describe_attempt(attempt: Attempt) -> str:
     """What came of an attempt, in a few words."""
     found = attempt.verification
@@ -138,6 +146,6 @@ def describe_attempt(attempt: Attempt) -> str:
         "abort": "given up",
     }
     told = words.get(taken) or (plain(attempt.ended) if attempt.ended not in ("", "done") else "")
-    faults = [counted(found.hard, "hard finding")] if found and found.hard else []
+    faults = format_hard(found) if found else []
     faults += ["the reviewer blocks"] if attempt.review and attempt.review.blocks else []
     return ": ".join(filter(None, [told, ", ".join(faults)]))

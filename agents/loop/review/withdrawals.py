@@ -35,10 +35,13 @@ def as_soft(findings: Iterable[Finding], withdrawn: Sequence[Withdrawal]) -> tup
         read.append(replace(finding, severity="soft") if is_gone else finding)
     if not gone:
         return read, ""
-    told = "; ".join(f"{finding.rule} {', '.join(dict.fromkeys(finding.objects))}" for finding in gone)
+    named = dict.fromkeys(f"{finding.rule} {', '.join(dict.fromkeys(finding.objects))}" for finding in gone)
     hard = sum(finding.severity == "hard" for finding in read)
-    left = f"{hard} hard beside {'it' if len(gone) == 1 else 'them'}" if hard else "no other is hard"
-    return read, f"Withdrawn by the planner, and not counted, though told as hard below: {told} ({left})."
+    left = f"{hard} hard beside {'it' if len(named) == 1 else 'them'}" if hard else "no other is hard"
+    return (
+        read,
+        f"Withdrawn by the planner, and not counted, though told as hard below: {'; '.join(named)} ({left}).",
+    )
 
 
 def format_withdrawn(withdrawn: Sequence[Withdrawal], *, to_builder: bool = False) -> str:

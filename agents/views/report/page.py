@@ -37,6 +37,7 @@ from simworlds.terminal.text import shortened
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from agents.loop.record.events import Verified
     from agents.loop.record.run_state import Attempt, RunState, StageRun
     from agents.protocol.report.grouping import FindingGroup
 
@@ -162,6 +163,10 @@ def _render_page(run_state: RunState, run: Path, media: Media) -> str:
 
 
 @cache
+def _hard(verified: Verified) -> str:
+    return ", ".join(formatting.format_hard(verified))
+
+
 def _environment() -> Environment:
     made = Environment(
         loader=FileSystemLoader(_FOLDER),
@@ -178,6 +183,7 @@ def _environment() -> Environment:
         cost=formatting.format_cost,
         swatch=formatting.swatch,
         stage_title=formatting.stage_title,
+        hard=_hard,
         clipped=code.clipped,
         role=format_role,
     )

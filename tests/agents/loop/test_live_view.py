@@ -56,6 +56,27 @@ def lines_of(tape: Tape) -> list[str]:
 # Lines
 
 
+def test_what_could_not_be_decided_is_not_called_a_hard_finding() -> None:
+    tape = Tape()
+    tape.began()
+    tape.add("stage.began", stage="motion")
+    unsure = {**finding("V2", "Gust", "'Gust' could not be checked."), "outcome": "undecided"}
+    tape.judged("motion", 1, "retry", (unsure,))
+    told = "\n".join(lines_of(tape))
+    assert "verifier: 1 hard rule undecided" in told
+    assert "attempt 1 sent back: 1 hard rule undecided" in told
+    many = tuple(
+        finding(f"R{at}", "Gust", f"It is wrong by {name}.")
+        for at, name in enumerate(("far", "much", "little", "half"))
+    )
+    tape.judged("motion", 2, "retry", (*many, unsure))
+    told = "\n".join(lines_of(tape))
+    assert "verifier: 4 hard findings, 1 hard rule undecided" in told
+    assert "more kinds" in told
+    tape.judged("motion", 3, "retry", many)
+    assert "and 1 more kind\n" in "\n".join(lines_of(tape))
+
+
 def test_log_lines_follow_the_run() -> None:
     told = "\n".join(lines_of(dominoes()))
     for words in (
@@ -63,10 +84,10 @@ def test_log_lines_follow_the_run() -> None:
         "Plan: Twelve dominoes (15 objects, 39 relations)",
         "Modeling, attempt 1\n",
         "blender_execute failed, 2.0 s: AttributeError: no operator",
-        "verifier: 13 hard findings, 1 soft finding",
+        "verifier: 12 hard findings, 1 hard rule undecided, 1 soft finding",
         "V1 ×12 Domino.01 … Domino.12 (12) · Table",
         "reviewer blocks: The row is even.",
-        "attempt 1 sent back: 13 hard findings, the reviewer blocks: The verifier measured it",
+        "attempt 1 sent back: 12 hard findings, 1 hard rule undecided, the reviewer blocks: The verifier measured it",
         "Modeling closed after 2 attempts, 1 min 14 s",
         "UV: skipped",
         "back to checkpoints/texture.blend",
@@ -169,7 +190,7 @@ def test_streamed_words_are_shown_by_their_end() -> None:
 
 def test_findings_of_the_last_attempt_stay_until_the_next_is_judged() -> None:
     told = drawn(run_in_progress(until("attempt.began", 2), Now(70.0), 40))
-    assert "Attempt 1: sent back: 13 hard findings, the reviewer blocks" in told
+    assert "Attempt 1: sent back: 12 hard findings, 1 hard rule undecided, the reviewer blocks" in told
     assert "V1 ×12 Domino.01 … Domino.12 (12) · Table" in told
     assert "Reviewer blocks: The row is even." in told
 
@@ -311,7 +332,9 @@ def test_quiet_view_keeps_the_state() -> None:
 
 def test_a_whole_run_is_shown_with_what_went_wrong_in_it() -> None:
     told = drawn(run_summary(until("run.ended")))
-    assert "Modeling, attempt 1: sent back: 13 hard findings, the reviewer blocks" in told
+    assert (
+        "Modeling, attempt 1: sent back: 12 hard findings, 1 hard rule undecided, the reviewer blocks" in told
+    )
     assert "Motion, attempt 1: planned anew: 1 hard finding" in told
     assert "Final review 2: accepted. All fall." in told
 

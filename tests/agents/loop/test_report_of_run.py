@@ -153,7 +153,7 @@ def test_relations_that_say_alike_share_a_row(page: BeautifulSoup) -> None:
 def test_an_attempt_that_was_sent_back_says_why(page: BeautifulSoup) -> None:
     first, second = stage(page, "Modeling").select("article.attempt")
     text = words(first)
-    assert "sent back: 13 hard findings, the reviewer blocks" in text
+    assert "sent back: 12 hard findings, 1 hard rule undecided, the reviewer blocks" in text
     assert "V1 contact hard ×12 Domino.01 … Domino.12 (12) · Table 20–31 mm 2 mm" in text
     assert "→ Lower it until it rests on the table." in text
     assert "The side view shows a gap below the dominoes." in text

@@ -246,8 +246,8 @@ def test_a_part_of_what_a_rule_finds_is_withdrawn() -> None:
         for at, name in enumerate(("bucket waits", "bucket rests"))
     )
     one = Withdrawal(rule="T7", objects=("Bucket",), says="'bucket waits'")
-    findings, told = as_soft([waits, rests], [one])
-    assert [finding.severity for finding in findings] == ["soft", "hard"]
+    findings, told = as_soft([waits, rests, waits], [one])
+    assert [finding.severity for finding in findings] == ["soft", "hard", "soft"]
     assert (
         told
         == "Withdrawn by the planner, and not counted, though told as hard below: T7 Bucket (1 hard beside it)."
