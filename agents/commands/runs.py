@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import threading
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
     Command = TypeVar("Command", bound=Callable[..., Any])
 
+_IN_A_PIPE = 5000  # columns: as many as a row may need, so that each run stays one line
 EXITS = {"done": 0, "aborted": 1, "failed": 2, "stopped": 3}
 _LIBRARY = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=Path)
 _FOLDER = click.Path(file_okay=False, resolve_path=True, path_type=Path)
@@ -211,9 +213,12 @@ def runs() -> None:
     from simworlds.terminal.console import Console  # noqa: PLC0415 - not for --help
 
     found, elsewhere = list_runs(), list_elsewhere()
+    console = Console(sys.stdout)
+    if not console.is_terminal and "COLUMNS" not in os.environ:
+        console.width = _IN_A_PIPE
     for table in (found, elsewhere):
         if table.row_count:
-            Console(sys.stdout).print(table)
+            console.print(table)
     if found.row_count or elsewhere.row_count:
         click.echo("To continue one: simworlds resume NAME. To look at one: simworlds show NAME.")
     none = "There are no other runs" if elsewhere.row_count else "There are no runs"

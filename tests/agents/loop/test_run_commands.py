@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -12,12 +13,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 from click.testing import CliRunner, Result
+from domino_run import dominoes
 from run_sessions import answered, at_home
 from running import run_here
 from team import ABORT, Team
 
 from agents.loop.demos import demo_options
-from agents.loop.record.elsewhere import runs_elsewhere
+from agents.loop.record.elsewhere import remembered, runs_elsewhere
 from agents.loop.record.journal import NAME
 from simworlds.cli import main
 from simworlds.own_command import own_command
@@ -228,6 +230,17 @@ def test_runs_in_folders_of_their_users_choice_are_listed_until_these_are_gone(
         shutil.rmtree(run)
         assert str(run) not in said("runs").stdout
         assert list((tmp_path / "runs-elsewhere").iterdir()) == []
+
+
+def test_in_a_pipe_each_run_is_one_line_with_its_whole_path(tmp_path: Path) -> None:
+    run = tmp_path / "a folder with a name that is longer than eighty columns are wide" / "and then one more"
+    with at_home(tmp_path / "home"), remembered(run):
+        run.mkdir(parents=True)
+        (run / NAME).write_text("".join(f"{json.dumps(row)}\n" for row in dominoes().rows))
+        piped = CliRunner().invoke(main, ["runs"], env={"COLUMNS": None}).stdout
+        narrow = CliRunner().invoke(main, ["runs"], env={"COLUMNS": "80"}).stdout
+    assert any(str(run) in line and " done " in line for line in piped.splitlines())
+    assert str(run) not in narrow
 
 
 _REMEMBERS = """
