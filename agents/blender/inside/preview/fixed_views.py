@@ -362,7 +362,7 @@ class PreviewRenderer:
             )
             return
         data = obj.data
-        aspect = (render.resolution_x * render.pixel_aspect_x) / (render.resolution_y * render.pixel_aspect_y)
+        aspect = _aspect(render)
         width = min(self._size * _CAMERA_WIDER, round(self._size * aspect))
         size = (max(16, width), max(16, min(self._size, round(width / aspect))))
         # Within a closed room all would lie in the shadow of its walls.
@@ -451,6 +451,15 @@ class PreviewRenderer:
         self._files += 1
         self._studio.render(camera, size, os.path.join(self._folder, file), slant=slant)
         return file
+
+
+def camera_side(width, render):
+    """The side of the fixed views beside which a camera's view is so wide; of an upright picture, so high."""
+    return round(width / min(max(_aspect(render), 1.0), _CAMERA_WIDER))
+
+
+def _aspect(render):
+    return (render.resolution_x * render.pixel_aspect_x) / (render.resolution_y * render.pixel_aspect_y)
 
 
 def studio_camera(studio, camera):

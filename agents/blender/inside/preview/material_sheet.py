@@ -12,7 +12,7 @@ from ..blend.named_objects import objects_named
 from ..blend.names import quoted
 from ..blend.protocol_tags import object_collections
 from ..digests.still_digest import digest_of, lasting_digest
-from .fixed_views import SCENE, PreviewRenderer, at_frame, copy_of, grouped_boxes, note_missing
+from .fixed_views import SCENE, PreviewRenderer, at_frame, camera_side, copy_of, grouped_boxes, note_missing
 from .framing import VIEWS, BoundingBox, boxes_of, patch_of, without_size
 from .lit_studio import LitStudio
 from .scene_copy import DRAWABLE
@@ -76,8 +76,9 @@ class _Sheet:
             self._digest = lasting_digest(scene)
             subject = copy_of(studio, SCENE, scene.name, None, self.notes)
             camera = scene.camera
+            side_of_view = camera_side(width, scene.render) if camera else width
             renderer = PreviewRenderer(
-                studio, subject, self._arguments["folder"], width // 2 if camera else width, first=self._files
+                studio, subject, self._arguments["folder"], side_of_view, first=self._files
             )
             renderer.set_up(True, False, [])
             if subject.gases:

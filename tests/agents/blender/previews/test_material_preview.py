@@ -120,6 +120,22 @@ def test_shows_the_scene_at_frames_through_its_camera(session: LiveSession) -> N
     assert session.run("bpy.context.scene.frame_current") == 1
 
 
+@pytest.mark.parametrize(
+    ("shape", "shown"), [((160, 90), (96, 54)), ((90, 90), (96, 96)), ((45, 90), (48, 96))]
+)
+def test_the_scene_is_shown_as_wide_as_asked_for(
+    session: LiveSession, shape: tuple[int, int], shown: tuple[int, int]
+) -> None:
+    build(
+        session,
+        "box('Mug'); bpy.ops.object.camera_add(location=(0, -6, 0), rotation=(math.pi / 2, 0, 0))\n"
+        "scene = bpy.context.scene; scene.camera = bpy.context.object\n"
+        f"scene.render.resolution_x, scene.render.resolution_y = {shape}",
+    )
+    sizes = {picture.size for picture in pictures(session.use(material_preview.TOOL, show="scene", width=96))}
+    assert sizes == {shown}
+
+
 # Beside a chest of 1 m a floor of 80 m, whose squares of 5 cm are grey from where all of it is seen.
 VAST_FLOOR = CLOSED_ROOM.split("box('Shell'", maxsplit=1)[0].replace("= 2\n", "= 20\n") + (
     "box('Floor', (0, 0, -.5), (80, 80, 1)).data.materials.append(material)\n"
