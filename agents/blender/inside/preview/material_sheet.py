@@ -144,7 +144,10 @@ class _Sheet:
                 }
             )
         if many:
-            self.notes.append(f"Not shown alone: {quoted(many, _NAMED)}. Name them as objects to see them.")
+            self.notes.append(
+                f"Not shown alone, since at most {_MOST_OBJECTS} objects are in one call: {quoted(many, _NAMED)}. "
+                "Name them as objects to see them."
+            )
         if late:
             spent = f"{self._arguments['seconds']:g} seconds were over"
             self.notes.append(

@@ -136,6 +136,12 @@ def test_the_scene_is_shown_as_wide_as_asked_for(
     assert sizes == {shown}
 
 
+def test_what_one_call_has_no_room_for_is_named_with_the_reason(session: LiveSession) -> None:
+    build(session, "for at in range(14): box(f'Post {at:02}', (2 * at, 0, 0))")
+    text = session.use(material_preview.TOOL, show="objects").text
+    assert "Not shown alone, since at most 12 objects are in one call: 'Post 12', 'Post 13'." in text
+
+
 # Beside a chest of 1 m a floor of 80 m, whose squares of 5 cm are grey from where all of it is seen.
 VAST_FLOOR = CLOSED_ROOM.split("box('Shell'", maxsplit=1)[0].replace("= 2\n", "= 20\n") + (
     "box('Floor', (0, 0, -.5), (80, 80, 1)).data.materials.append(material)\n"
