@@ -85,6 +85,11 @@ def own_files() -> list[Path]:
     return sorted(path for path in FOLDER.rglob("*.md") if path.parent.name != "sheets")
 
 
+def test_who_sets_the_camera_is_told_which_frames_its_reviewer_sees() -> None:
+    for stage in ("camera", "light"):
+        assert "that of the fastest motion" in whole("coder", stage)
+
+
 def test_every_paragraph_of_every_file_is_used() -> None:
     files = own_files()
     assert {path.stem for path in files} == {*ROLES, *STAGES, "team", "at_once"}
