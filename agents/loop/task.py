@@ -26,8 +26,9 @@ class RunTask:
 
     An ``edit`` has no scene plan; it is judged without what was ``known`` of the file before, and, unless the file is
     ``tagged`` (keeps the scene protocol), without the rules of its layout. ``actors`` are those that move;
-    of an edit, ``declared`` says by what, ``targets`` are what its plan changes, ``old`` the objects that the file had,
-    and ``unplanned`` finds what has changed that its plan does not ask for.
+    of an edit, ``declared`` says by what, ``targets`` are what its plan changes, ``mentioned`` objects that it speaks
+    of besides, ``old`` the objects that the file had, and ``unplanned`` finds what has changed that its plan does not
+    ask for.
     ``before`` is a still of the file as it was, at ``before_frame`` and of ``before_width`` pixels, and ``goal`` a
     picture of what it is to look like.
     """
@@ -40,6 +41,7 @@ class RunTask:
     known: tuple[Finding, ...] = ()
     declared: tuple[EditedActor, ...] = ()
     targets: tuple[str, ...] = ()
+    mentioned: tuple[str, ...] = ()
     old: tuple[str, ...] = ()
     unplanned: Callable[[Stage], list[Finding]] | None = None
     before: Picture | None = None
@@ -50,11 +52,12 @@ class RunTask:
     def readout(self) -> tuple[dict[str, Any], dict[str, Any]]:
         """Arguments of the scene's readout, and those that follow from the run.
 
-        Of an edit, what it changes or adds is told in full, the rest counted; of a new scene, all is told.
+        Of an edit, what its plan changes, adds or speaks of is told in full, the rest counted; of a new scene, all is
+        told.
         """
         if not self.edit:
             return {}, {}
-        named = list(dict.fromkeys((*self.targets, *self.actors)))[:_MOST_NAMES]
+        named = list(dict.fromkeys((*self.targets, *self.actors, *self.mentioned)))[:_MOST_NAMES]
         return {"focus": named, "max_tokens": _READOUT_TOKENS}, self.old_objects
 
     @property

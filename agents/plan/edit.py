@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from difflib import get_close_matches
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -12,7 +13,7 @@ from agents.plan.scene import RenderSettings
 from agents.protocol.vocabulary import DeformationKind, MotionKind
 
 if TYPE_CHECKING:
-    from collections.abc import Set
+    from collections.abc import Iterable, Set
 
 _SLIP = 0.8  # from how alike on (0 to 1) a name is taken for a slip of another one
 # A name as it is in the file, which need not follow a plan's rules for names.
@@ -82,6 +83,16 @@ class EditPlan(PlanPart):
     def targets(self) -> frozenset[str]:
         """The names of everything that may change."""
         return frozenset(name for task in self.tasks for name in task.targets)
+
+
+def mentioned_in(plan: EditPlan, names: Iterable[str]) -> list[str]:
+    """Those of the file's ``names`` that instructions speak of without changing them, as in "like the Mug"."""
+    told = "\n".join(task.instruction for task in plan.tasks)
+    return [
+        name
+        for name in names
+        if name in told and name not in plan.targets and re.search(rf"(?<!\w){re.escape(name)}(?!\w)", told)
+    ]
 
 
 def unknown_targets(plan: EditPlan, names: Set[str]) -> list[str]:

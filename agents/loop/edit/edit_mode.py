@@ -17,6 +17,7 @@ from agents.loop.review.verdicts import verify
 from agents.loop.running.position import START
 from agents.loop.running.run_tools import RENDER, RUNNER
 from agents.loop.task import RunTask
+from agents.plan.edit import mentioned_in
 from agents.roles.planner import Planner, format_edit_plan
 from simworlds.llm.messages import Picture
 
@@ -94,6 +95,7 @@ def _task(run: Run, plan: EditPlan, before: Blocks) -> RunTask:
         known=known,
         declared=plan.actors,
         targets=tuple(dict.fromkeys(name for task in plan.tasks for name in task.targets)),
+        mentioned=tuple(mentioned_in(plan, before.objects)),
         old=before.objects,
         unplanned=partial(unplanned, run, before, plan),
     )

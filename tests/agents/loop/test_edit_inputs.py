@@ -11,7 +11,7 @@ from PIL import Image
 from agents.loop.edit.baseline import new_findings
 from agents.loop.edit.inputs import picture
 from agents.loop.errors import Unusable
-from agents.plan.edit import EditPlan, unknown_targets
+from agents.plan.edit import EditPlan, mentioned_in, unknown_targets
 from agents.protocol.findings import Finding
 
 if TYPE_CHECKING:
@@ -121,6 +121,17 @@ def edit_plan(*tasks: tuple[str, ...], **more: Any) -> EditPlan:
         for kind, stage, *names in tasks
     ]
     return EditPlan.model_validate({"title": "An edit", "tasks": told, "render": STILL, **more})
+
+
+def test_what_instructions_speak_of_beside_their_targets_is_found_in_the_file() -> None:
+    task = {
+        "kind": "add",
+        "stage": "modeling",
+        "targets": ["Jug"],
+        "instruction": "A Jug like Mug.001, on the Table.",
+    }
+    plan = EditPlan.model_validate({"title": "Jug", "tasks": [task], "render": {"kind": "still"}})
+    assert mentioned_in(plan, ("Mug.001", "Tab", "Table", "Jug", "Spoon")) == ["Mug.001", "Table"]
 
 
 def test_only_what_is_there_or_is_added_can_be_changed() -> None:

@@ -229,6 +229,6 @@ def test_a_readout_of_an_edit_has_what_it_names_and_what_the_file_did_not_have()
     had = blocks(kitchen()).objects
     assert "Camera" in had
     assert not any(name.startswith("Object") for name in had)
-    task = RunTask("", actors=("Ball",), edit=True, targets=("Table", "Ball"), old=had)
-    assert task.readout() == ({"focus": ["Table", "Ball"], "max_tokens": 2000}, {"old": list(had)})
+    task = RunTask("", actors=("Ball",), edit=True, targets=("Table", "Ball"), mentioned=("Rug",), old=had)
+    assert task.readout() == ({"focus": ["Table", "Ball", "Rug"], "max_tokens": 2000}, {"old": list(had)})
     assert RunTask("", actors=("Ball",)).readout() == ({}, {}), "a new scene is read whole"
