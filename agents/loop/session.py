@@ -145,10 +145,18 @@ def resume(root: Path, session: RunSession) -> Ended:
         raise NoRun(f"{root} is not a run: it has no {NAME}. 'simworlds runs' lists the runs.")
     ending = read_run_state(root).ending
     if ending and ending.outcome == "done":
-        return Ended(
-            "done", "The run was finished already.", root / (ending.file or ""), root / (ending.video or "")
-        )
+        told = f"The run was finished already.{_too_late(session.limits)}"
+        return Ended("done", told, root / (ending.file or ""), root / (ending.video or ""))
     return _work(root, None, session)
+
+
+def _too_late(limits: RunLimits) -> str:
+    """What is said of options for a rendering that is made; "" without any."""
+    given = {"--render-minutes": limits.render_minutes, "--samples": limits.samples}
+    named = [option for option, value in given.items() if value is not None]
+    if not named:
+        return ""
+    return f" {' and '.join(named)} change{'s' * (len(named) == 1)} nothing of it: what is rendered stays."
 
 
 def _work(root: Path, options: Options | None, session: RunSession) -> Ended:

@@ -243,6 +243,13 @@ def test_in_a_pipe_each_run_is_one_line_with_its_whole_path(tmp_path: Path) -> N
     assert str(run) not in narrow
 
 
+def test_options_that_come_too_late_for_a_run_are_told(tmp_path: Path) -> None:
+    (tmp_path / NAME).write_text("".join(f"{json.dumps(row)}\n" for row in dominoes().rows))
+    late = said("resume", tmp_path, "--render-minutes", "10", "--samples", "32").output
+    assert "--render-minutes and --samples change nothing of it" in " ".join(late.split())
+    assert "change nothing" not in said("resume", tmp_path).output
+
+
 _REMEMBERS = """
 import sys
 from pathlib import Path
