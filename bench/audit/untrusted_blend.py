@@ -36,6 +36,7 @@ from simworlds.sandbox.replies import unread
 if TYPE_CHECKING:
     from types import TracebackType
 
+    from simworlds.sandbox.blender_process import Progress
     from simworlds.sandbox.runtime import Runtime
 
 INSIDE = Path(__file__).parent / "inside"
@@ -112,14 +113,17 @@ class UntrustedBlend:
         self._deadline = time.monotonic() + self._means.seconds
         self.ask("open", path=str(path), doing="opening it")
 
-    def ask(self, job: str, *, doing: str, **arguments: Any) -> Any:
-        """The reply of ``bench/audit/inside/serve.py`` to a job. ``doing``: the job in words, for errors.
+    def ask(self, job: str, *, doing: str, progress: Progress | None = None, **arguments: Any) -> Any:
+        """The reply of ``bench/audit/inside/serve.py`` to a job. ``doing``: the job in words, for errors. ``progress``
+        gets how much of it is done.
 
         Raises NotScored, or CannotStart if this Blender lacks a module.
         """
         left = max(0.0, self._deadline - time.monotonic())
         try:
-            return self._process.call(job, arguments, unread, timeout=left, what=doing).value
+            return self._process.call(
+                job, arguments, unread, timeout=left, what=doing, progress=progress
+            ).value
         except MissingModule as error:
             raise CannotStart(str(error)) from error
         except Refusal as error:

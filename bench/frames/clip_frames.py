@@ -24,7 +24,7 @@ from simworlds.sandbox.errors import Refusal
 from simworlds.sandbox.pictures.picture_decoder import PictureDecoder
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
 SHARES = (0.0, 0.25, 0.5, 0.75, 1.0)
@@ -73,20 +73,24 @@ def frames_of(source: Path, static: bool, folder: Path) -> tuple[Path, ...]:
     return take_frames(source, static, folder).paths
 
 
-def take_frames(
+def take_frames(  # noqa: PLR0913 - what is taken, how, and who is told
     source: Path,
     static: bool,
     folder: Path,
     quality: RenderQuality | None = None,
     options: BlenderOptions | None = None,
+    *,
+    tell: Callable[[str], None] | None = None,
 ) -> FrameSet:
-    """As ``frames_of``, with notes. Raises NotScored, or CannotStart if no Blender works."""
+    """As ``frames_of``, with notes. ``tell`` is called with each frame that is being rendered, in words.
+
+    Raises NotScored, or CannotStart if no Blender works.
+    """
     shares = SHARES[:1] if static else SHARES
     kind = kind_of(source)
     if kind == "blend":
-        return _frames_of_blend(
-            source, shares, folder, quality or RenderQuality(), options or BlenderOptions(seconds=SECONDS)
-        )
+        means = options or BlenderOptions(seconds=SECONDS)
+        return _frames_of_blend(source, shares, folder, quality or RenderQuality(), means, tell=tell)
     if kind == "picture" and not static:
         raise NotScored("a picture has one frame only; a clip needs a video or a .blend")
     return FrameSet(kind, tuple(_write_pictures(folder, shares, video.pictures(source, shares))))
@@ -100,17 +104,23 @@ def kind_of(source: Path) -> Source:
     return "picture" if suffix in video.PICTURES else "video"
 
 
-def _frames_of_blend(
-    blend: Path, shares: Sequence[float], folder: Path, quality: RenderQuality, options: BlenderOptions
+def _frames_of_blend(  # noqa: PLR0913 - as above
+    blend: Path,
+    shares: Sequence[float],
+    folder: Path,
+    quality: RenderQuality,
+    options: BlenderOptions,
+    *,
+    tell: Callable[[str], None] | None,
 ) -> FrameSet:
     """Renders with unbaked physics simulated; if that takes too long or Blender ends, again without that physics."""
     notes: list[str] = []
     try:
-        rendered = _rendered(blend, shares, quality, options, jump=False)
+        rendered = _rendered(blend, shares, quality, options, tell=tell, jump=False)
     except NotScored as error:
         first, why = error, str(error)
         try:
-            rendered = _rendered(blend, shares, quality, options, jump=True)
+            rendered = _rendered(blend, shares, quality, options, tell=tell, jump=True)
         except NotScored:
             raise first from None
         notes.append(f"rendered without unbaked physics, after a first try failed ({why})")
@@ -121,8 +131,14 @@ def _frames_of_blend(
     return FrameSet("blend", tuple(_write_pictures(folder, shares, _decoded(rendered))), tuple(notes))
 
 
-def _rendered(
-    blend: Path, shares: Sequence[float], quality: RenderQuality, options: BlenderOptions, *, jump: bool
+def _rendered(  # noqa: PLR0913 - as above
+    blend: Path,
+    shares: Sequence[float],
+    quality: RenderQuality,
+    options: BlenderOptions,
+    *,
+    tell: Callable[[str], None] | None,
+    jump: bool,
 ) -> _Rendered:
     arguments: dict[str, Any] = {
         "shares": list(shares),
@@ -130,8 +146,13 @@ def _rendered(
         "samples": quality.samples,
         "jump": jump,
     }
+
+    def progress(done: float, total: float | None, _: str) -> None:
+        if tell is not None and total is not None:
+            tell(f"rendering frame {done + 1:.0f} of {total:.0f}")
+
     with UntrustedBlend(blend, options) as file:
-        answer = file.ask("frames", **arguments, doing="rendering it")
+        answer = file.ask("frames", **arguments, doing="rendering it", progress=progress)
     try:
         rendered = _Rendered.model_validate(answer)
     except ValidationError:

@@ -144,7 +144,7 @@ def _frames(task: SceneTask, record: SceneRecord, due: DueStep, tell: Tell) -> d
         return {"why": _no_file(record)}
     tell("taking frames")
     try:
-        taken = _taken(task, blend, _video(task, record))
+        taken = _taken(task, blend, _video(task, record), tell)
     except NotScored as error:
         return {"why": str(error)}
     frames = tuple(
@@ -164,16 +164,16 @@ def _video(task: SceneTask, record: SceneRecord) -> Path | None:
     return path if path.is_file() and (task.is_static or kind_of(path) == "video") else None
 
 
-def _taken(task: SceneTask, blend: Path, video: Path | None) -> FrameSet:
+def _taken(task: SceneTask, blend: Path, video: Path | None, tell: Tell) -> FrameSet:
     """Takes frames of the video; if that fails, of the .blend. Raises NotScored."""
     folder = task.folder / FRAMES
     means = replace(task.means, seconds=max(task.means.seconds, SECONDS))
     if video is None:
-        return take_frames(blend, task.is_static, folder, task.look, means)
+        return take_frames(blend, task.is_static, folder, task.look, means, tell=tell)
     try:
         return take_frames(video, task.is_static, folder)
     except NotScored as error:
-        taken = take_frames(blend, task.is_static, folder, task.look, means)
+        taken = take_frames(blend, task.is_static, folder, task.look, means, tell=tell)
         return replace(taken, notes=(f"rendered, as the video cannot be read: {error}", *taken.notes))
 
 

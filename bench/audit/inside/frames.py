@@ -27,11 +27,12 @@ _UNSEEN = {"CAMERA", "LIGHT", "SPEAKER", "LIGHT_PROBE", "ARMATURE", "LATTICE"}
 _PICTURE = {"file_format": "PNG", "color_mode": "RGB", "color_depth": "8", "compression": 15}
 
 
-def render(shares, pixels, samples, jump=False):
+def render(shares, pixels, samples, jump=False, report=lambda *_: None):
     """Renders the frames at ``shares`` (0 to 1) of the clip by Cycles, with about ``pixels`` pixels and ``samples``.
 
     Returns ``frames``: for each its number and ``png`` (base64); ``camera``: its name, None if one was added;
-    ``unbaked``: physics without a bake, in words. Raises Refused.
+    ``unbaked``: physics without a bake, in words. ``report`` is told of each frame before it is rendered. Raises
+    Refused.
     """
     scene = bpy.context.scene
     check_scene(scene, render=True)
@@ -55,6 +56,7 @@ def render(shares, pixels, samples, jump=False):
     for frame in steps:
         scene.frame_set(frame)
         if frame in wanted:
+            report(len(pictures), len(set(wanted)))
             pictures[frame] = _picture(scene)
     labels = sorted(each.label for each in unbaked)
     return {

@@ -79,6 +79,13 @@ def test_five_frames_are_taken_evenly_from_the_first_to_the_last(files: Path, tm
 
 
 @pytest.mark.blender
+def test_each_frame_is_told_while_it_is_rendered(files: Path, tmp_path: Path) -> None:
+    told: list[str] = []
+    take_frames(files / "keyed.blend", False, tmp_path, SMALL, tell=told.append)
+    assert told == [f"rendering frame {number} of 5" for number in range(1, 6)]
+
+
+@pytest.mark.blender
 def test_a_static_scene_has_one_frame_and_older_frames_are_deleted(files: Path, tmp_path: Path) -> None:
     (tmp_path / "100.png").touch()
     found = taken("square", files, tmp_path, static=True)
