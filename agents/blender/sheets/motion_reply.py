@@ -144,6 +144,6 @@ class MotionReply(_Reply):
         """Whether the frames were played or stepped, and why, in words."""
         stride = "" if self.stride == 1 else f"; measured every {self.stride} frames"
         if self.stepped_from is None:
-            return f"played, since all physics is baked or there is none{stride}"
+            return f"played: nothing had to be simulated{stride}"
         names = ", ".join(self.stepped_for[:4]) + (" …" if len(self.stepped_for) > 4 else "")
         return f"stepped frame by frame from {self.stepped_from}, not baked: {names}{stride}"

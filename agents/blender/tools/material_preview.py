@@ -151,7 +151,7 @@ def _sheet(blender: Supervisor, kept: KeptPictures, shown: MaterialReply) -> Ima
 
 def _text(shown: MaterialReply, data: dict[str, Any]) -> str:
     files = data["files"]
-    lines = ["In neutral light, not the scene's:"]
+    lines = ["In neutral light, not the scene's:"] if files else ["Nothing is shown:"]
     lines += [f"- frame {view.frame}, {_seen_by(view)}" for view in shown.scene]
     lines += [_line(one) for one in shown.objects]
     lines += [f"- close up: {', '.join(patch.name for patch in shown.patches)}"] if shown.patches else []
@@ -166,7 +166,8 @@ def _text(shown: MaterialReply, data: dict[str, Any]) -> str:
         if data["kept"]
         else []
     )
-    return "\n".join([*lines, f"Saved as {format_list(files, len(files))}."])
+    lines += [f"Saved as {format_list(files, len(files))}."] if files else []
+    return "\n".join(lines)
 
 
 def _seen_by(view: LitView) -> str:

@@ -195,7 +195,7 @@ def _lines(trial: _TrialReply) -> Iterator[str]:
     if trial.last < trial.first:
         yield f"No frame could be simulated: {trial.stopped}"
     else:
-        yield f"Frames {trial.first}–{trial.last} of {', '.join(trial.caches)}; nothing was baked."
+        yield f"Frames {trial.first}–{trial.last} of {', '.join(trial.caches)}; a trial bakes nothing."
         yield _pace(trial)
     if trial.stopped and trial.last >= trial.first:
         yield f"**Ended after frame {trial.last}**: {trial.stopped.rstrip('.')}."

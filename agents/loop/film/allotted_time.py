@@ -20,9 +20,13 @@ _MENDING_SECONDS = 180.0
 _WORTH = 0.5  # of the time that a film took, for which it is rendered anew
 _SAMPLES_A_CORE_SECOND = 0.15  # million, of a furnished room
 _ROOM = """\
-The film may take {minutes:g} minutes on the {cores} here; no GPU is counted on. In that time Cycles makes some \
+The film may take {minutes} on the {cores} here; no GPU is counted on. In that time Cycles makes some \
 {millions:,.0f} million samples (frames × width × height × samples a pixel) of a simple scene, and half as many with \
 glass, volumes or many lights. What is planned beyond that is made smaller."""
+
+
+def _minutes(number: float) -> str:
+    return f"{number:g} minute{'s' * (number != 1)}"
 
 
 def minutes_of(run: Run, ahead: float = 0.0, share: float = 1.0) -> float:
@@ -69,7 +73,7 @@ def room_for_film(run: Run) -> str:
         )
         minutes, cores = run.film_limits.minutes or usual, SYSTEM.cores()
         millions = round(minutes * 60 * cores * _SAMPLES_A_CORE_SECOND, -1)
-        text = _ROOM.format(minutes=minutes, cores=counted(cores, "core"), millions=millions)
+        text = _ROOM.format(minutes=_minutes(minutes), cores=counted(cores, "core"), millions=millions)
         run.journal.note(RoomTold(text=text))
     told = run.journal.find(RoomTold())
     return told.text if told is not None else ""

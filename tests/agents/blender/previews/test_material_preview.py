@@ -215,6 +215,13 @@ def test_what_has_no_size_yet_is_named_and_the_others_are_shown(session: LiveSes
     assert "Not shown alone, without any size at this frame: 'Seed'." in result.text
 
 
+def test_where_nothing_can_be_shown_no_file_is_named(session: LiveSession) -> None:
+    build(session, "box('Mug'); box('Ghost', (3, 0, 0)).hide_render = True")
+    text = session.use(material_preview.TOOL, show="objects", objects=["Ghost"]).text
+    assert text.startswith("Nothing is shown:\n")
+    assert "Saved as" not in text
+
+
 def test_an_unknown_name_is_refused_with_the_nearest(session: LiveSession) -> None:
     build(session, CLOSED_ROOM)
     with pytest.raises(Refusal, match="Nearest: 'The Chest 2'"):

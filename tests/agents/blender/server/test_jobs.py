@@ -112,7 +112,7 @@ async def test_a_result_is_kept_until_it_is_fetched_and_longer(client: Client) -
     assert said(ended).endswith(f"Results not fetched yet: of job {first}.")
     for _ in range(2):
         answer = await do(client, action="result", job=first)
-        assert "nothing was baked" in said(answer)
+        assert "a trial bakes nothing" in said(answer)
         assert any(isinstance(part, ImageContent) for part in answer.content)
     assert data(await do(client, action="result"))["job"] == second
 
