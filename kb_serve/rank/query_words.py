@@ -46,7 +46,7 @@ class QueryWords:
         sql = "SELECT word FROM vocabulary WHERE length(word) > 3 GROUP BY word ORDER BY min(stem)"
         return [word for (word,) in self._reader.rows(sql)]
 
-    def _correction(self, word: str) -> str:
+    def correction(self, word: str) -> str:
         """The corpus' word that an unknown one was probably meant to be; empty when none is near."""
         if len(word) < 4 or not word.isalpha():
             return ""
@@ -89,6 +89,6 @@ class QueryWords:
         """The word by its own stem, or else by that of its correction."""
         if idf := self._index.idf(own):
             return Concept(word, own, 1.0, idf)
-        if corrected := stem(self._correction(word)):
+        if corrected := stem(self.correction(word)):
             return Concept(word, corrected, _CORRECTED_WEIGHT, self._index.idf(corrected))
         return Concept(word, "", 0.0, _UNKNOWN_IDF)

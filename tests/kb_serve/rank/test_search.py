@@ -111,21 +111,24 @@ def test_queries_without_words_find_nothing(searcher: Searcher, query: str) -> N
     ("written", "meant"), [("colision", "collision"), ("rendr", "render"), ("simualtion", "simulation")]
 )
 def test_an_unknown_word_is_read_as_one_of_the_corpus(searcher: Searcher, written: str, meant: str) -> None:
-    assert [concept.stem for concept in searcher.words.concepts(written)] == [stem(meant)]
+    assert stem(searcher.words.correction(written)) == stem(meant)
     assert {row.ref for row in searcher.search(f"cloth {written}", 10)} & {
         row.ref for row in searcher.search(f"cloth {meant}", 10)
     }
 
 
 def test_a_class_in_small_letters_is_read_as_its_words(searcher: Searcher) -> None:
-    asked = [concept.word for concept in searcher.concepts("viewlayer active object")]
+    asked = [concept.word for concept in searcher.words.concepts("viewlayer active object")]
     assert sorted(asked) == ["active", "layer", "object", "view"]
-    assert [concept.word for concept in searcher.concepts("material thickness")] == ["material", "thickness"]
+    assert [concept.word for concept in searcher.words.concepts("material thickness")] == [
+        "material",
+        "thickness",
+    ]
 
 
 @pytest.mark.parametrize("word", ["", "abc", "x1y2z3", "zzzzzzzz", "a b", "é" * 9])
 def test_a_word_without_a_similar_one_is_not_corrected(searcher: Searcher, word: str) -> None:
-    assert searcher.correction(word) == ""
+    assert searcher.words.correction(word) == ""
 
 
 def test_rare_words_tell_more(searcher: Searcher, reader: BaseReader) -> None:
@@ -137,7 +140,8 @@ def test_rare_words_tell_more(searcher: Searcher, reader: BaseReader) -> None:
 
 def test_a_query_is_its_distinct_words_without_the_framing_ones(searcher: Searcher) -> None:
     words = [
-        concept.word for concept in searcher.concepts("How do I bake the cloth, the cloths and the bake?")
+        concept.word
+        for concept in searcher.words.concepts("How do I bake the cloth, the cloths and the bake?")
     ]
     assert words == ["bake", "cloth"]
     assert not STOP_WORDS & set(words)
