@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
 # How many different calls a function is read for, and how many more where their texts are left out.
 _MOST_CALLS, _MOST_KINDS = 24, 8
+_MOST_TURNS = 3  # in which a function is read that asks what it returns itself
 _MOST_IN_VAIN = 2  # readings for single calls, one after the other, that bring no more than that for all
 
 
@@ -43,7 +44,16 @@ class Functions(Parameters, Trials):
     def run(self, number: int) -> None:
         """See :class:`core.Core`."""
         function = self.functions[number]
-        function.running, function.stale, function.runs = True, False, function.runs + 1
+        function.runs += 1
+        for _ in range(_MOST_TURNS):
+            before = function.returned
+            self._run_once(function)
+            asks_itself = any(asked == number for asked, _ in function.readings)
+            if not asks_itself or function.returned == before:
+                break
+
+    def _run_once(self, function: FunctionDefinition) -> None:
+        function.running, function.stale = True, False
         function.seen = self.stamp(function)
         function.readings = {}
         function.uses = set()

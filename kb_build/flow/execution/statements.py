@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import sys
+from functools import partial
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.evaluation.expressions import is_decided
@@ -14,12 +15,15 @@ from kb_build.flow.execution.handlers import Handlers
 from kb_build.flow.execution.imports import Imports
 from kb_build.flow.execution.loops import Loops
 from kb_build.flow.values.texts import lessened
-from kb_build.flow.values.type_parts import HOLDING, bounded
-from kb_build.flow.values.types import NONE, ClassObject, join, literal
+from kb_build.flow.values.type_parts import HOLDING, bounded, with_parts, without_parts
+from kb_build.flow.values.types import NONE, UNKNOWN, ClassObject, join, literal, members, union
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from collections.abc import Sequence as Rows
+
+    from kb_build.flow.state.definitions import FunctionDefinition
+    from kb_build.flow.values.types import Type
 
 _LEAVING = (ast.Return, ast.Raise, ast.Break, ast.Continue)
 
@@ -46,10 +50,21 @@ class Statements(Assignments, Branches, Loops, Handlers, Imports, Defining):
 
     def _return(self, node: ast.Return) -> bool:
         kind = self.told(self.evaluate(node.value), node.value) if node.value is not None else NONE
-        if self.here.function is not None:
-            before, kind = self.here.function.returned, bounded(kind)
-            self.here.function.returned = kind if before is None else join(before, kind)
+        function = self.here.function
+        if function is not None:
+            kind = self._ended(function, bounded(kind))
+            function.returned = kind if function.returned is None else join(function.returned, kind)
         return False
+
+    def _ended(self, function: FunctionDefinition, kind: Type) -> Type:
+        """What a function returns, without what it is known to return inside: a tree of lists has no end."""
+        number = self.numbers.get(function.node)
+        if number is None or all(asked != number for asked, _ in function.readings):
+            return kind
+        known = [
+            part for part in members(self.functions[number].returned or UNKNOWN) if isinstance(part, HOLDING)
+        ]
+        return union(with_parts(one, partial(without_parts, known=known)) for one in members(kind))
 
     def _raise(self, node: ast.Raise) -> bool:
         for part in (node.exc, node.cause):

@@ -38,6 +38,7 @@ from kb_build.flow.values.types import (
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from collections.abc import Collection as Group
     from collections.abc import Mapping as Rows
 
 DEEPEST_TYPE = 6  # parts within each other of what a name holds
@@ -112,6 +113,19 @@ def bounded(kind: Type, depth: int = DEEPEST_TYPE) -> Type:
             return replace(kind, owner=below(kind.owner))
         case _:
             return with_parts(kind, below)
+
+
+def without_parts(kind: Type, known: Group[Type]) -> Type:
+    """A type in which nothing is known of what is one of those, or a dictionary of the same names."""
+    if any(_is_again(kind, one) for one in known):
+        return UNKNOWN
+    return with_parts(kind, partial(without_parts, known=known)) if isinstance(kind, HOLDING) else kind
+
+
+def _is_again(kind: Type, known: Type) -> bool:
+    if isinstance(kind, Mapping) and isinstance(known, Mapping) and kind.items:
+        return [name for name, _ in kind.items] == [name for name, _ in known.items]
+    return kind == known
 
 
 def unsure(kind: Type) -> Type:

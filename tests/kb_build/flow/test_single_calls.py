@@ -131,3 +131,19 @@ def test_a_result_that_later_code_changes_is_not_sure(api: Api) -> None:
 )
 def test_calls_of_calls_are_read_to_their_end(api: Api, code: str) -> None:
     assert analyse(code, api).complete
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "return {ob.name: [f(c) for c in ob.children]}",
+        "return {'loc': list(ob.location), 'kids': [f(c) for c in ob.children]}",
+        "rows = [(ob.name, ob)]\n    rows.append(f(ob.children[0]))\n    return rows",
+        "return (ob, f(ob.parent)) if ob.parent else ob",
+        "kids = []\n    for c in ob.children:\n        if k := f(c):\n            kids.append(k)\n"
+        "    return {'name': ob.name, 'kids': kids} if kids else None",
+    ],
+)
+def test_what_a_function_builds_of_its_own_results_leaves_the_rest_known(api: Api, body: str) -> None:
+    code = f"import bpy\ndef f(ob):\n    {body}\nf(bpy.context.object)\nbpy.context.object.no_such"
+    assert unknown(api, code) == {("Object", "no_such")}
