@@ -58,15 +58,11 @@ class Operators:
         for match in forms.first_matches(forms.POLL, query):
             if symbol := self._reader.symbol(match["path"]):
                 recognition.add(symbol.path, 0.98, "error message")
-                if _SAYS_WHY.match(query, match.end()) or self._tells_alone(symbol, query[match.end() :]):
+                said = query[match.end() :]
+                wanted = self._said_to_want(symbol, said)
+                if _SAYS_WHY.match(query, match.end()) or (not wanted and self._tells_alone(symbol, said)):
                     continue
-                recognition.notes.append(
-                    context_for(
-                        symbol,
-                        self._said_to_want(symbol, query[match.end() :]),
-                        keywords_given(query, symbol.path),
-                    )
-                )
+                recognition.notes.append(context_for(symbol, wanted, keywords_given(query, symbol.path)))
                 add_guide(ON_OPERATORS, self._reader, recognition)
                 recognition.add(OVERRIDE, 0.82, "error message")
             elif not self._reader.removed(match["path"]):

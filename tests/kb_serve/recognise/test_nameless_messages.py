@@ -414,7 +414,8 @@ def test_each_message_leads_to_what_it_is_about(kb: KnowledgeBase, messages: lis
         assert len(about) <= 1, said
         answer = kb.query(said)
         for one in about:
-            assert answer.hits[0].id in one.paths, said
+            named = [hit.id for hit in answer.hits if f"{hit.id}.poll()" not in said]
+            assert named[0] in one.paths, said
             assert one.help in answer.notes
         assert answer.notes, said
 
