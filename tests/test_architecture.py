@@ -85,6 +85,7 @@ ORDERS = {
             "docs_answer",
             "next_call",
             "said_twice",
+            "changes",
             "drafts",
             "composer",
         ),

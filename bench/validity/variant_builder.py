@@ -107,8 +107,9 @@ class VariantBuilder:
 
     def difference(self, first: Path, second: Path) -> float:
         """The mean absolute difference of two variants' pictures: red, green and blue from 0 to 1."""
-        names = {"first": str(first.with_suffix("")), "second": str(second.with_suffix(""))}
-        return float(self._worker.opened(self.original).ask("compare", doing="comparing", **names))
+        one, other = (str(path.with_suffix("")) for path in (first, second))
+        blender = self._worker.opened(self.original)
+        return float(blender.ask("compare", doing="comparing", first=one, second=other))
 
     # Audits
 

@@ -11,9 +11,11 @@ from asking import SEED, classes, of_data, paths
 
 from kb_build.store import Contents, write_base
 from kb_build.symbols.records import Page, Section
-from kb_serve.answer.budget import tokens
-from kb_serve.answer.composer import AnswerComposer
+from kb_serve.answer.budget import AnswerBlock, tokens
+from kb_serve.answer.composer import AnswerComposer, _names_before_long
+from kb_serve.answer.hit_lines import NAMES
 from kb_serve.answer.next_call import next_call
+from kb_serve.answer.pages import MANUALS_WORDS
 from kb_serve.errors import BadQuery
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.query_limits import LEAST_TOKENS, LIMIT, MAX_LIMIT, MAX_TOKENS
@@ -318,7 +320,15 @@ def test_the_footer_says_where_the_last_line_goes_on(kb: KnowledgeBase) -> None:
         assert "".join(last.split()) in everything
 
 
-def test_other_names_that_are_asked_for_go_before_a_long_text_of_the_manual(kb: KnowledgeBase) -> None:
-    text = kb.query("simple_deform deform_method twist angle axis").text
-    assert 0 < text.index("`bpy.types.SimpleDeformModifier.angle`") < text.index("**In the manual**")
-    assert "`bpy.types.SimpleDeformModifier.deform_axis`" in text
+def test_other_names_go_before_a_long_text_of_the_manual_and_behind_a_short_one() -> None:
+    head, values = AnswerBlock("## `deform_method`"), AnswerBlock("**Values**", "values")
+    names, found = AnswerBlock("**In Python**", NAMES), AnswerBlock("**Pages**", "further pages")
+    for length, order in (
+        (1_000, [head, values, names, "text", found]),
+        (10, [head, "text", values, names, found]),
+    ):
+        text = AnswerBlock("word " * length, MANUALS_WORDS)
+        wanted = [text if one == "text" else one for one in order]
+        assert [*_names_before_long([head, text, values], [names, found])] == wanted
+    alone = AnswerBlock("word " * 1_000, MANUALS_WORDS)
+    assert [*_names_before_long([head, alone, values], [])] == [head, alone, values]

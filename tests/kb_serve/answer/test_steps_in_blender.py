@@ -42,6 +42,7 @@ TOPICS = {
     "rigid body": ("RigidBodyObject", "RigidBodyWorld", "RigidBodyConstraint"),
     "shader nodes": ("ShaderNodeTree", "ShaderNodeBsdfPrincipled", "ShaderNodeTexImage"),
     "strips": ("TextStrip", "ColorStrip"),
+    "texture nodes": ("TextureNodeTexMusgrave",),
     "uv": ("MeshUVLoopLayer",),
     "volumes": ("Volume", "VolumeToMeshModifier", "MeshToVolumeModifier"),
     "world": ("World",),
@@ -54,6 +55,13 @@ def test_what_people_ask_for_is_done_without_an_error(reader: BaseReader) -> Non
     assert [(topic.topic, *row) for topic in done for row in topic.failed] == []
     assert all(topic.done for topic in done)
     assert sum(topic.done for topic in done) > 4 * len(TOPICS)
+
+
+def test_a_node_of_textures_is_put_in_the_tree_that_a_texture_has(reader: BaseReader) -> None:
+    told = "\n".join(steps(reader, "texture nodes", "TextureNodeTexMusgrave"))
+    assert "`tree = texture.node_tree`" in told
+    assert 'tree.nodes["Output"].inputs["Color"]' in told
+    assert "group.node_tree = tree" not in told  # a group cannot hold itself
 
 
 def test_whatever_can_be_made_is_made_without_an_error(reader: BaseReader) -> None:

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from kb_serve.knowledge_base import KnowledgeBase
-
 TYPES = "bpy.types."
 GEOMETRY, COMMON = "modeling/geometry_nodes/", "interface/controls/nodes/types/"
 BAKE, SWITCH, EACH = f"{GEOMETRY}bake", f"{GEOMETRY}menu_switch", f"{GEOMETRY}for_each_geometry_zone"
@@ -90,10 +88,3 @@ def topics(reader: BaseReader, tmp_path_factory: pytest.TempPathFactory) -> Iter
 )
 def test_a_node_is_found_by_what_is_to_be_done_with_it(topics: Topics, text: str, slug: str) -> None:
     assert topics.find(text) == slug
-
-
-def test_a_node_of_textures_is_put_in_the_tree_that_a_texture_has(kb: KnowledgeBase) -> None:
-    text = kb.query("Bricks node").text
-    assert "`tree = texture.node_tree`" in text
-    assert 'tree.nodes["Output"].inputs["Color"]' in text
-    assert "group.node_tree = tree" not in text  # a group cannot hold itself

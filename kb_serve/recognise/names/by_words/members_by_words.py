@@ -35,9 +35,9 @@ def members_by_words(cls: str, beside: Collection[str], reader: BaseReader) -> l
     if not 0 < len(asked) <= _MOST_WORDS:
         return []
     if reader.descends(cls, NODE) and (sides := [word for word in asked if word in SIDES]):
-        return sockets_by_words(
-            cls, {SIDES[word] for word in sides}, [w for w in asked if w not in SIDES], reader
-        )
+        named = [word for word in asked if word not in SIDES]
+        if named or not any(SIDES[word] for word in sides):  # of ``sockets`` alone the class lists all
+            return sockets_by_words(cls, {SIDES[word] for word in sides}, named, reader)
     own = list(_members(cls, reader))
     found = [(_unsaid(entry, asked), entry.path) for entry in own if not _missing(entry, asked)]
     if not found:
