@@ -29,7 +29,7 @@ def test_no_phrase_is_a_labelled_query() -> None:
     phrases = {
         phrase.strip().lower() for row in load_query_expansions().values() for phrase in row.split(";")
     }
-    for file in SUMMARIES.glob("*.jsonl"):
+    for file in SUMMARIES.glob("*.page-*.jsonl"):
         for line in file.read_text(encoding="utf-8").splitlines():
             phrases |= {phrase.lower() for phrase in ShippedSummary.from_line(line).phrases}
     assert len(phrases) > 30_000

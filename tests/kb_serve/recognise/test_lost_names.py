@@ -44,6 +44,6 @@ def test_a_node_that_is_gone_is_known_by_what_people_call_it(
     assert answer.hits[0].id == f"bpy.types.{instead}"
 
 
-@pytest.mark.parametrize("question", ["math node", "glossy bsdf node", "noise texture node"])
+@pytest.mark.parametrize("question", ["math node", "glossy bsdf node", "geometry nodes modifier input"])
 def test_a_node_that_is_there_is_not_lost(kb: KnowledgeBase, question: str) -> None:
     assert not any("does not exist" in note for note in kb.query(question).notes)

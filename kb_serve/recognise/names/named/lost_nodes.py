@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 _NODE = frozenset({"node", "nodes"})
 _KINDS = ("", "Tex", "Bsdf")  # what the classes of shader nodes say besides
 _KIND_WORDS = frozenset({"bsdf", "texture"})
+_SYSTEMS = frozenset({"compositing", "compositor", "function", "geometry", "shader"})  # not a node's name
 _LONGEST = 2  # words
 _OF_CLASSES = 2  # dots in the path of a class
 
@@ -22,7 +23,8 @@ _OF_CLASSES = 2  # dots in the path of a class
 def lost_nodes(words: Sequence[str], reader: BaseReader) -> Iterator[str]:
     """The paths of the nodes that are gone, and have a successor, whose names are the words before ``node``."""
     for place, word in enumerate(words):
-        for length in range(min(place, _LONGEST), 0, -1) if word in _NODE else ():
+        is_named = word in _NODE and _SYSTEMS.isdisjoint(words[max(0, place - 1) : place])
+        for length in range(min(place, _LONGEST), 0, -1) if is_named else ():
             said = "".join(one for one in words[place - length : place] if one not in _KIND_WORDS)
             names = [key(f"{family}{kind}{said}") for family in NODE_FAMILIES for kind in _KINDS]
             if any(map(reader.by_key, names)):  # Blender has a node that is called so
