@@ -21,8 +21,9 @@ def test_the_answer_says_what_is_meant(kb: KnowledgeBase, lacked: str) -> None:
     assert kb.symbol(lacked) is None
     found = MEANT_ELSEWHERE[lacked]
     answer = kb.query(f"AttributeError: '{owner}' object has no attribute '{name}'")
-    assert found.path in {hit.id for hit in answer.hits[:2]}  # the class is named first by some messages
     assert any(found.how in note for note in answer.notes)
+    if not any("new in" in note for note in answer.notes):  # what a later Blender has, no other place has
+        assert found.path in {hit.id for hit in answer.hits[:2]}  # the class is named first by some messages
 
 
 @pytest.mark.blender
