@@ -58,15 +58,12 @@ class _Described:
     def terms(self) -> list[_Term]:
         """What is defined here, but for what is marked as another symbol's."""
         marked = {line for _, line in self.section.marks}
-        found = ((Passage(self._page.slug, self._number, line), term) for line, term in self._lines(marked))
-        return [
-            _Term(place, key_of_term(term), keys_of_term(term))
-            for place, term in found
-            if says_something(self._page, place)
-        ]
-
-    def _lines(self, marked: Container[int]) -> Iterator[tuple[int, str]]:
-        return ((line, term) for line, term in term_lines(self.section.text) if line not in marked)
+        found: list[_Term] = []
+        for line, term in term_lines(self.section.text):
+            place = Passage(self._page.slug, self._number, line)
+            if line not in marked and says_something(self._page, place):
+                found.append(_Term(place, key_of_term(term), keys_of_term(term)))
+        return found
 
 
 def find_panel_passages(

@@ -142,17 +142,25 @@ class _Panels:
             if function not in self._classes[derived].functions:
                 yield from self.drawn_by(derived, function, depth - 1)
 
-    def headings(self, name: str, depth: int = _DEEPEST) -> tuple[str, ...]:
-        """The labels of a panel and of those that it lies in; nothing for what is no panel."""
-        label, parent = self._fact(name, "label"), self._fact(name, "parent")
-        above = self.headings(parent, depth - 1) if parent and depth else ()
-        return (*above, label) if label else above
+    def headings(self, name: str) -> tuple[str, ...]:
+        """The labels of a panel and of those that it lies in, the outermost first; nothing for what is no panel."""
+        labels = (self._fact(one, "label") for one in reversed(self._around(name)))
+        return tuple(filter(None, labels))
 
     def tab(self, name: str) -> str:
-        """The tab or the category that a panel, or the outermost one around it, is in."""
-        parent = self._fact(name, "parent")
-        own = self._fact(name, "category") or self._fact(name, "tab").lstrip(".")
-        return own or (self.tab(parent) if parent and parent != name else "")
+        """The tab or the category that a panel is in, or the first one around it that says so."""
+        tabs = (
+            self._fact(one, "category") or self._fact(one, "tab").lstrip(".") for one in self._around(name)
+        )
+        return next(filter(None, tabs), "")
+
+    def _around(self, name: str) -> list[str]:
+        """A panel, and those that it lies in, the innermost first."""
+        found: list[str] = []
+        while name and name not in found:
+            found.append(name)
+            name = self._fact(name, "parent")
+        return found
 
     def _fact(self, name: str, fact: str, depth: int = _DEEPEST) -> str:
         """What a class, or the first of its bases that does, says of itself."""

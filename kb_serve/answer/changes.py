@@ -45,9 +45,11 @@ def version_asked_about(question: str, reader: BaseReader) -> str:
     """The version of which a question asks what it changed as a whole; empty for other questions. Of two versions, the
     newer.
     """
-    versions = [found[1] for found in _VERSION.finditer(question)]
+    versions = _VERSION.findall(question)
+    if not versions:
+        return ""
     said = [word for word in words(_VERSION.sub(" ", question.replace("'", ""))) if word not in STOP_WORDS]
-    if not versions or _CHANGES.isdisjoint(said) or not {*said} <= _CHANGES | _OF_ALL:
+    if _CHANGES.isdisjoint(said) or not {*said} <= _CHANGES | _OF_ALL:
         return ""
     newest = max(versions, key=version_key)
     return newest if newest in reader.history_versions else ""
@@ -68,8 +70,8 @@ def changes_of(version: str, reader: BaseReader) -> VersionChanges:
 
 
 def _where_all_is(version: str, reader: BaseReader) -> str:
-    older = [one for one in reader.history_versions if version_key(one) < version_key(version)]
-    before = max(older, key=version_key, default=version)
+    versions = reader.history_versions  # the oldest first
+    before = versions[max(0, versions.index(version) - 1)]
     return (
         f"What scripts of Blender {before} meet in {version}; the names that count most are listed. All of it: "
         f"`simworlds kb diff {before} {version}`. What of it a project meets, with fixes: "
@@ -115,9 +117,10 @@ def _new(version: str, reader: BaseReader) -> tuple[list[str], int]:
 
 def _line_of_gone(removed: RemovedSymbol) -> str:
     first = removed.successors[0]
-    instead = f" → `{first.target.removeprefix(TYPES)}`" if first.target else ""
-    how = clip(first.how, _HOW)
-    return f"- `{removed.path.removeprefix(TYPES)}`{instead}{'. ' if instead and how else ': ' if how else ''}{how}"
+    name, how = f"- `{removed.path.removeprefix(TYPES)}`", clip(first.how, _HOW)
+    if first.target:
+        return ". ".join(filter(None, (f"{name} → `{first.target.removeprefix(TYPES)}`", how)))
+    return ": ".join(filter(None, (name, how)))
 
 
 def _line_of_new(entry: SymbolEntry) -> str:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import combinations, product
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import STOP_WORDS, key
+from kb_build.symbols.api_names import SIDES
 from kb_build.symbols.paths import plain_path
 from kb_serve.rank.nodes.named_nodes import nodes_by_label, words_said
-from kb_serve.recognise.names.by_words.members_by_words import SIDES, sockets_by_words
+from kb_serve.recognise.names.by_words.members_by_words import SIDE_WORDS, sockets_by_words
 from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 
 if TYPE_CHECKING:
@@ -37,7 +39,7 @@ class AskedSockets:
         those that its other words name, and what took the place of one that was removed.
         """
         said = words_said(question)
-        sides = {SIDES[word] for word in said if word in SIDES}
+        sides = {SIDE_WORDS[word] for word in said if word in SIDE_WORDS}
         best = recognition.best
         if not sides or len(said) > _MOST_WORDS or (best is not None and best.sure >= _SURE):
             return
@@ -46,7 +48,7 @@ class AskedSockets:
             return
         node = nodes[0]
         rest = [*said[: node.start], *said[node.end :]]
-        asked = [word for word in rest if word not in SIDES and word not in _NO_NAMES]
+        asked = [word for word in rest if word not in SIDE_WORDS and word not in _NO_NAMES]
         if any(self._add_removed(path, recognition) for path in self._former(node.path, sides, asked)):
             return
         for rank, path in enumerate(sockets_by_words(node.path, sides, asked, self._reader)):
@@ -64,13 +66,10 @@ class AskedSockets:
 
     def _former(self, node: str, sides: set[str], asked: Sequence[str]) -> Iterator[str]:
         """Paths of the sockets that a node had, and that words are the name of."""
-        for side in [side for side in sides if side] or ["inputs", "outputs"]:
-            for start in range(len(asked)):
-                for end in range(start + 1, min(len(asked), start + _LONGEST) + 1):
-                    name = key(f"{side}[{''.join(asked[start:end])}]")
-                    yield from (
-                        path for path in self._reader.removed_by_key(name) if path.startswith(f"{node}.")
-                    )
+        spans = [span for span in combinations(range(len(asked) + 1), 2) if span[1] - span[0] <= _LONGEST]
+        for side, (start, end) in product([*filter(None, sides)] or SIDES, spans):
+            name = key(f"{side}[{''.join(asked[start:end])}]")
+            yield from (path for path in self._reader.removed_by_key(name) if path.startswith(f"{node}."))
 
 
 def _is_of_list(node: NamedNode, said: Sequence[str]) -> bool:

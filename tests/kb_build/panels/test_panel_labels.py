@@ -93,6 +93,24 @@ class CAMERA_MT_menu(bpy.types.Menu):
     assert labels(symbols, code) == {}
 
 
+def test_panels_that_lie_in_each_other_come_to_an_end(symbols: BaseSymbols) -> None:
+    code = """
+import bpy
+
+class DATA_PT_a(bpy.types.Panel):
+    bl_label = "A"
+    bl_parent_id = "DATA_PT_b"
+
+    def draw(self, context):
+        self.layout.prop(context.camera.dof, "focus_distance")
+
+class DATA_PT_b(bpy.types.Panel):
+    bl_label = "B"
+    bl_parent_id = "DATA_PT_a"
+"""
+    assert labels(symbols, code)[DISTANCE] == [PanelLabel(("B", "A"), "", ())]
+
+
 @pytest.mark.parametrize(
     "code",
     [

@@ -6,7 +6,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import STOP_WORDS, stem, words
-from kb_build.symbols.api_names import NODE, TYPES
+from kb_build.symbols.api_names import NODE, SIDES, TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -19,7 +19,7 @@ _MOST_SOCKETS = 8  # … and sockets, of which a panel's worth begins alike: ``C
 _SHORTEST = 4  # letters of a word that may be a beginning, or misspelt
 _MOST_COMPARED = 4_000  # pairs of words whose likeness is remembered
 # How a question says that it is about sockets → the side that it means; empty for both.
-SIDES = {
+SIDE_WORDS = {
     "input": "inputs", "inputs": "inputs", "output": "outputs", "outputs": "outputs", "socket": "", "sockets": "",
 }  # fmt: skip
 _SLIP = 0.79  # similarity of a word with two letters exchanged
@@ -34,10 +34,10 @@ def members_by_words(cls: str, beside: Collection[str], reader: BaseReader) -> l
     asked = [word for text in beside for word in words(text) if word not in STOP_WORDS]
     if not 0 < len(asked) <= _MOST_WORDS:
         return []
-    if reader.descends(cls, NODE) and (sides := [word for word in asked if word in SIDES]):
-        named = [word for word in asked if word not in SIDES]
-        if named or not any(SIDES[word] for word in sides):  # of ``sockets`` alone the class lists all
-            return sockets_by_words(cls, {SIDES[word] for word in sides}, named, reader)
+    if reader.descends(cls, NODE) and (sides := [word for word in asked if word in SIDE_WORDS]):
+        named = [word for word in asked if word not in SIDE_WORDS]
+        if named or not any(SIDE_WORDS[word] for word in sides):  # of ``sockets`` alone the class lists all
+            return sockets_by_words(cls, {SIDE_WORDS[word] for word in sides}, named, reader)
     own = list(_members(cls, reader))
     found = [(_unsaid(entry, asked), entry.path) for entry in own if not _missing(entry, asked)]
     if not found:
@@ -57,7 +57,7 @@ def sockets_by_words(
     """Paths of a node's sockets of some sides that words describe, all of them or else each of them one; without words
     none, as the node lists them all.
     """
-    begins = tuple(f"{side}[" for side in sides if side) or ("inputs[", "outputs[")
+    begins = tuple(f"{side}[" for side in [*filter(None, sides)] or SIDES)
     own = [one for name, one in reader.members(node).items() if name.startswith(begins)]
     found = [one.path for one in own if asked and not _missing(one, asked)]
     if not found:

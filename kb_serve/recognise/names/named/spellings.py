@@ -100,7 +100,8 @@ class Spellings:
             return  # ``'EMITTER'`` is not the page of emitters
         if self._path(text, recognition):
             return
-        if not is_message(query) and _CODE.isdisjoint(query):
+        in_words = " " in text and not is_message(query) and _CODE.isdisjoint(query)
+        if in_words:
             self._lost_nodes(text.lower().split(), recognition)
         if slug := find_page(text, self._reader):
             recognition.add(slug, 1.0, "exact")
@@ -117,7 +118,7 @@ class Spellings:
             self._labelled(text, recognition)
             self._labels_within(text.split(), recognition)
             self._lost_within(text.lower().split(), recognition)
-            if not is_message(query) and _CODE.isdisjoint(query):
+            if in_words:
                 self._lost_names(text.split(), recognition)
         rows = self._reader.by_key(key(called))
         if rows:
