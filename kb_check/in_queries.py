@@ -17,7 +17,7 @@ from kb_check.beside import checker_beside
 from kb_check.summary import mended
 from kb_check.text.source import split_lines
 from kb_check.whole_fixes import with_whole_fixes
-from kb_serve.reader import UNLIMITED
+from kb_serve.lookups.base_file import UNLIMITED
 from kb_serve.recognise.code.wrong_values import NO_VALUE
 from kb_serve.recognise.message_patterns import members_named
 from kb_serve.recognise.names.likely.corrections import is_misspelling
@@ -189,8 +189,8 @@ def _having(name: str, attributes: Collection[str], reader: BaseReader) -> list[
     """The class of a variable that one of its attributes tells, as it alone has one of that name."""
     is_own = name in _INSTANCES or name[:1].isupper()  # a class of the script's, or one that it imports
     for attribute in () if is_own else filter(is_telling, attributes):
-        owners = {entry.owner for entry in reader.by_name(attribute)}
-        if any(path.endswith(f".{attribute}") for path in reader.removed_named(attribute)):
+        owners = {entry.owner for entry in reader.names.by_name(attribute)}
+        if any(path.endswith(f".{attribute}") for path in reader.history.removed_named(attribute)):
             continue  # another class had it, and may be meant
         cls = reader.entry(owners.pop()) if len(owners) == 1 else None
         if cls is not None and cls.kind == "class" and cls.group == "data" and cls.path.startswith(_OF_DATA):
@@ -217,7 +217,7 @@ def _news(
         is_value = finding.rule == _NO_VALUE and (_ARGUMENT in finding.symbol or bool(_OF_CLASS.match(line)))
         is_value = is_value and _IS_NONE.search(finding.message) is not None
         is_name = finding.rule in _NAMES or bool(finding.absent)
-        is_left = is_long and (finding.rule == _KEYWORD or reader.removed(finding.symbol) is not None)
+        is_left = is_long and (finding.rule == _KEYWORD or reader.history.removed(finding.symbol) is not None)
         is_product = finding.rule == _PRODUCT and finding.fix is not None
         is_told = (is_name and not (is_value or is_text or is_left)) or is_behind or is_product
         is_wrong = finding.severity == "error" or is_value or finding.rule == _NEVER_TRUE

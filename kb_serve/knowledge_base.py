@@ -74,7 +74,7 @@ class KnowledgeBase:
     def page(self, slug: str) -> Page | None:
         """The whole raw record of a page."""
         with self._lock:
-            return self._reader.page(slug)
+            return self._reader.manual.page(slug)
 
     @property
     def meta(self) -> dict[str, str]:

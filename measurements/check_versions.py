@@ -208,15 +208,15 @@ def _path(row: Resolution, symbol: str) -> str:
 def _is_gone(checker: Checker, path: str) -> bool:
     """Whether a Blender lacks what the older one had; a member that only its class was renamed around is there."""
     reader, api = checker.names.reader, checker.api
-    removed = reader.removed(path)
-    if removed is None or version_of(removed[1]) < version_of(OLDER) or reader.still_works(path):
+    removed = reader.history.removed(path)
+    if removed is None or version_of(removed[1]) < version_of(OLDER) or reader.history.still_works(path):
         return False
     function, bracket, parameter = path.removesuffix(")").partition("(")
     symbol = api.symbols.symbol(function)
     if bracket and symbol is not None and parameter in {"", *(one.name for one in symbol.parameters)}:
         return False
     owner, _, name = path.rpartition(".")
-    heirs = [row.target for row in reader.successors(owner)]
+    heirs = [row.target for row in reader.history.successors(owner)]
     return not any(api.member(heir, name) for heir in heirs) and all(
-        row.target.rpartition(".")[2] != name for row in reader.successors(path)
+        row.target.rpartition(".")[2] != name for row in reader.history.successors(path)
     )

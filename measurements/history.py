@@ -44,9 +44,9 @@ class ListVerdict:
 
 def judge(row: dict[str, Any], reader: BaseReader, answer: DocsAnswer) -> ListVerdict:
     """Compares the base's rows about a path, and the answer to a line of code with it, with what is true."""
-    removed = reader.removed(row["path"])
+    removed = reader.history.removed(row["path"])
     dated = removed is not None and removed[2] == row["removed"]
-    targets = [successor.target for successor in reader.successors(row["path"])]
+    targets = [successor.target for successor in reader.history.successors(row["path"])]
     first = (
         targets[0] in row["instead"] if row["instead"] and targets else targets == [""] and not row["instead"]
     )

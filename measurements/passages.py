@@ -35,7 +35,7 @@ def passages(reader: BaseReader) -> Iterator[tuple[str, str, str]]:
     for path, slug, number, line in reader.rows(
         "SELECT path, slug, section, line FROM passages ORDER BY path"
     ):
-        page = reader.page(slug)
+        page = reader.manual.page(slug)
         if page is not None:
             section = page.sections[number]
             yield path, f"{page.title} > {section.title}", passage_text(section.text, line)

@@ -43,8 +43,8 @@ def steps_of_topics(base: Path, share: int = 1) -> dict[str, list[str]]:
     reader = BaseReader(base)
     try:
         topics, found = Topics(reader), dict[str, list[str]]()
-        for slug in sorted(reader.slugs)[::share]:
-            page = reader.page_entry(slug)
+        for slug in sorted(reader.manual.slugs)[::share]:
+            page = reader.manual.page_entry(slug)
             if page is not None and topics.find(page.title.lower()) == slug:
                 steps = numbered(topics.steps(slug))
                 found |= {slug: steps} if steps else {}

@@ -74,6 +74,10 @@ ORDERS = {
         *("wire", "apart", "classes", "outside_rna", "instances", "passes", "nodes"),
         *("bpy_ops", "preconditions", "tried", "extract_api"),
     ),
+    "kb_serve.lookups": (
+        *("records", "kept_rows", "base_file", "symbols"),
+        *("names", "history", "makers", "manual", "usage", "settings"),
+    ),
     "kb_serve.recognise.names": ("likely", "named", "elsewhere", "by_words"),
     "kb_serve.answer": (
         *("budget", "pages", "facts", "ways", "render", "steps", "topic"),
@@ -167,6 +171,8 @@ RULES = (
     # How text is cut into words belongs to the store's schema: index and query must agree on it.
     Rule("kb_build.index.analysis", ("kb_build",), ("kb_build.symbols.api_names",)),
     Rule("kb_build.index.everyday_table", ("kb_build",)),
+    # What is in a base, before anything is made of it.
+    Rule("kb_serve.lookups", ("kb_serve",), ("kb_serve.lookups", "kb_serve.errors")),
     Rule("kb_serve", others("simworlds", "kb_build", "kb_serve"), through=True),
     Rule(
         "kb_serve",

@@ -132,7 +132,7 @@ def calls_of_several(script: Script) -> list[CallSite]:
         signatures = {symbol.signature for symbol in symbols}
         paths = {symbol.path for symbol in symbols}
         if len(kinds) == len(symbols) and len(paths) > 1 and len(signatures) == 1 and all(signatures):
-            weights = script.names.reader.weights([symbol.owner for symbol in symbols])
+            weights = script.names.reader.usage.weights([symbol.owner for symbol in symbols])
             found.append(_site(node, max(symbols, key=lambda symbol: weights.get(symbol.owner, 0.0))))
     return found
 

@@ -41,8 +41,8 @@ class KeptVersion:
 
         Of what is in a class that came later, too, nothing is known: the class may have had another name before.
         """
-        gone = target.removed(path)
-        first, lacked = (gone[0], "") if gone else target.arrival(path)
+        gone = target.history.removed(path)
+        first, lacked = (gone[0], "") if gone else target.history.arrival(path)
         if not first or version_of(first) <= self.version or (lacked and version_of(lacked) < self.version):
             return ""
         if _known(self.checker, path) if self.checker is not None else self._had(path):
@@ -52,7 +52,7 @@ class KeptVersion:
     def _is_in_newer(self, path: str, target: BaseReader) -> bool:
         """Whether anything that a symbol belongs to came later, too."""
         while path := split_path(path)[0]:
-            since = target.arrival(path)[0]
+            since = target.history.arrival(path)[0]
             if since and version_of(since) > self.version:
                 return True
         return False
@@ -65,12 +65,12 @@ class KeptVersion:
         # Without a base, what the history tells: of arguments, values and sockets it tells too little.
         if any(mark in path for mark in '([:"'):
             return False
-        since = target.arrival(path)[0] or target.arrival(path.rpartition(".")[0])[0]
+        since = target.history.arrival(path)[0] or target.history.arrival(path.rpartition(".")[0])[0]
         return not since or version_of(since) <= self.version
 
     def _had(self, path: str) -> bool:
         """Whether a later Blender that lacks a symbol knows that this one had it."""
-        spans = (reader.removed(path) for reader in self.histories)
+        spans = (reader.history.removed(path) for reader in self.histories)
         return any(
             span[0] and version_of(span[0]) <= self.version <= version_of(span[1]) for span in spans if span
         )
@@ -80,7 +80,7 @@ def _known(checker: Checker, path: str) -> bool:
     """Whether a Blender has a symbol, an argument ``f(x)``, a value ``p:X`` or a socket."""
     reader, symbols = checker.names.reader, checker.api.symbols
     if '["' in path:
-        return symbols.symbol(path) is not None or bool(reader.still_works(path))
+        return symbols.symbol(path) is not None or bool(reader.history.still_works(path))
     owner, mark, value = split_path(path)
     if mark == ":":
         return value in checker.api.values_of(owner)

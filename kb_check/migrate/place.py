@@ -222,8 +222,8 @@ class Place:
         given.
         """
         reader = self.script.names.reader
-        successors = reader.successors(symbol)
-        removed = reader.removed(symbol)
+        successors = reader.history.successors(symbol)
+        removed = reader.history.removed(symbol)
         told = reason or next((row.how for row in successors if row.how), "") or f"{symbol} is gone."
         source = successors[0].source if successors else ""
         uses = tuple(targets) or tuple(row.target for row in successors if row.target)[:1]
@@ -231,7 +231,9 @@ class Place:
         if removed:
             since = version_of(successors[0].version if successors else removed[2])
         else:
-            since = max((version_of(reader.arrival(path)[0] or "0.0") for path in uses), default=since)
+            since = max(
+                (version_of(reader.history.arrival(path)[0] or "0.0") for path in uses), default=since
+            )
         return Change(
             rule, tuple(edits), told, source, since, uses, tuple(additions), not is_deprecated, symbol
         )

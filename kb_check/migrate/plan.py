@@ -100,7 +100,7 @@ class Migrator:
         """The oldest Blender that had something which the files use and the target lacks."""
         reader = self._target.names.reader
         findings = [one for state in states for one in state.findings]
-        spans = (reader.removed(one.symbol) for one in findings if one.symbol)
+        spans = (reader.history.removed(one.symbol) for one in findings if one.symbol)
         oldest = min((version_of(span[1]) for span in spans if span), default=_version(self._target))
         has_products = any(one.rule == "refused-product" for one in findings)
         return min(oldest, BEFORE_PRODUCTS) if has_products else oldest
@@ -163,7 +163,9 @@ class Migrator:
     def _held_before(self, finding: Finding) -> bool:
         """Whether a comparison that never holds now could hold where the script ran: only its value's name changed."""
         successors = (
-            self._target.names.reader.successors(finding.symbol) if finding.rule == "never-true" else []
+            self._target.names.reader.history.successors(finding.symbol)
+            if finding.rule == "never-true"
+            else []
         )
         return len(successors) == 1 and bool(successors[0].target) and not successors[0].how
 
@@ -209,7 +211,7 @@ class Migrator:
         for finding in state.findings:
             if finding.severity == "note":
                 continue
-            successors = reader.successors(finding.symbol) if finding.symbol else []
+            successors = reader.history.successors(finding.symbol) if finding.symbol else []
             how = "; ".join(dict.fromkeys(row.how for row in successors if row.how))
             if not how and finding.fix is not None:
                 how = finding.fix.title

@@ -190,7 +190,7 @@ class KnownNames:
 
     def still_works(self, path: str) -> str:
         """The symbol that one gets by a former name that this Blender still takes; empty where it does not."""
-        return self.reader.still_works(path)
+        return self.reader.history.still_works(path)
 
     def _removed(self, removed: RemovedSymbol) -> Lacking:
         targets = removed.targets or tuple(path for path, _ in removed.similar[:_MOST_NAMED])
@@ -334,7 +334,7 @@ class KnownNames:
         if not owner.startswith(TYPES):
             return self._alike(name, names)
         found = nearest(name, names, len(names))
-        weights = self.reader.weights([self._path_of(owner, one) for one, _ in found])
+        weights = self.reader.usage.weights([self._path_of(owner, one) for one, _ in found])
         found.sort(key=lambda row: (-row[1], -weights.get(self._path_of(owner, row[0]), 0.0)))
         return [one for one, _ in found[:_MOST_NAMED]]
 

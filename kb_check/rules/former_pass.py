@@ -58,7 +58,7 @@ def _check(script: Script) -> Iterator[Finding]:
 
 def _name_now(script: Script, name: str) -> tuple[str, str]:
     """The name of a pass that was called so, and since when: the output has that of the setting that turns it on."""
-    for row in script.names.reader.successors(f'{_NODE}.outputs["{name}"]'):
+    for row in script.names.reader.history.successors(f'{_NODE}.outputs["{name}"]'):
         if setting := script.api.symbols.symbol(row.target):
             return setting.label, row.version
     return "", ""

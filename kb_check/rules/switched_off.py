@@ -82,7 +82,7 @@ def _is_array(script: Script, node: ast.expr) -> bool:
 
 def _switched_off(script: Script, path: str) -> tuple[str, tuple[str, ...]]:
     """(what to say of a setting, the settings of which one must be changed) where it is of no use on a new thing."""
-    conditions = script.names.reader.conditions_of(path)
+    conditions = script.names.reader.settings.conditions_of(path)
     clauses = [[*rows] for _, rows in groupby(conditions, key=attrgetter("clause"))]
     for row, *others in clauses:
         is_switch = not others and row.otherwise == "greyed" and row.test == TEST_ON

@@ -248,7 +248,7 @@ def _owner_that_had(script: Script, row: Resolution, owner: str) -> str:
             return known
     below = [cls for cls in script.api.descendants(owner) if script.names.was(cls, row.value)]
     # What went from all of them at once was one thing: each kind of light had a contact shadow.
-    spans = {script.names.reader.removed(f"{cls}.{row.value}") for cls in below}
+    spans = {script.names.reader.history.removed(f"{cls}.{row.value}") for cls in below}
     return below[0] if len(spans) == 1 else owner
 
 

@@ -56,7 +56,7 @@ def _check(script: Script) -> Iterator[Finding]:
         if _may_be_of_another(script, row):
             continue
         # Of several classes that a thing may be of, the one with the value that may be meant, or else the heaviest.
-        weights = script.names.reader.weights([_class_of(path) for path in row.missing])
+        weights = script.names.reader.usage.weights([_class_of(path) for path in row.missing])
         owner = max(
             row.missing,
             key=lambda path: (_likeness(script, path, row.value), weights.get(_class_of(path), 0.0)),

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from kb_build.schema import unpack
 from kb_build.symbols.records import Symbol, symbol_from_json
 from kb_check.stubs.modules import MARK, Stubs, write_modules
-from kb_serve.reader import open_file
+from kb_serve.lookups.base_file import open_file
 from simworlds.errors import UserError
 from simworlds.files import staged_file, write_whole
 

@@ -16,7 +16,8 @@ from simworlds.releases import version_key
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol
 
 _VERSION = re.compile(r"(?<![\w.])v?([2-9]\.\d{1,2})(?:\.x)?(?![\w.])")
@@ -52,7 +53,7 @@ def version_asked_about(question: str, reader: BaseReader) -> str:
     if _CHANGES.isdisjoint(said) or not {*said} <= _CHANGES | _OF_ALL:
         return ""
     newest = max(versions, key=version_key)
-    return newest if newest in reader.history_versions else ""
+    return newest if newest in reader.history.history_versions else ""
 
 
 def changes_of(version: str, reader: BaseReader) -> VersionChanges:
@@ -70,7 +71,7 @@ def changes_of(version: str, reader: BaseReader) -> VersionChanges:
 
 
 def _where_all_is(version: str, reader: BaseReader) -> str:
-    versions = reader.history_versions  # the oldest first
+    versions = reader.history.history_versions  # the oldest first
     before = versions[max(0, versions.index(version) - 1)]
     return (
         f"What scripts of Blender {before} meet in {version}; the names that count most are listed. All of it: "
@@ -88,10 +89,10 @@ def _listed(title: str, lines: Sequence[str], left: int) -> Iterator[AnswerBlock
 def _gone(version: str, reader: BaseReader) -> tuple[list[RemovedSymbol], int]:
     """What went that has a successor or a reason in writing, whole names first; and how much else did."""
     lookup = RemovedSymbolLookup(reader)
-    paths = reader.gone_in(version)
-    told = [found for path in paths if reader.successors(path) and (found := lookup.of_path(path))]
+    paths = reader.history.gone_in(version)
+    told = [found for path in paths if reader.history.successors(path) and (found := lookup.of_path(path))]
     owners = {removed.path: removed.path.rpartition(".")[0] for removed in told}
-    weights = reader.weights({*owners.values()})
+    weights = reader.usage.weights({*owners.values()})
 
     def place(removed: RemovedSymbol) -> tuple[bool, bool, bool, float, str]:
         is_part = bool({"(", ":"} & {*removed.path})
@@ -107,11 +108,11 @@ def _gone(version: str, reader: BaseReader) -> tuple[list[RemovedSymbol], int]:
 
 def _new(version: str, reader: BaseReader) -> tuple[list[str], int]:
     """The classes, operators and members that came, those that count most first, without those of classes that came."""
-    paths = [path for path in reader.new_in(version) if path.startswith((TYPES, OPERATORS))]
+    paths = [path for path in reader.history.new_in(version) if path.startswith((TYPES, OPERATORS))]
     came = {*paths}
     whole = [path for path in paths if plain_path(path) == path and path.rpartition(".")[0] not in came]
     entries = [entry for entry in map(reader.entry, whole) if entry and entry.group != "ui"]
-    heaviest = [entry.path for entry in reader.heaviest(entries)][:_MOST_NEW]
+    heaviest = [entry.path for entry in reader.usage.heaviest(entries)][:_MOST_NEW]
     return heaviest, len(whole) - len(heaviest)
 
 

@@ -230,15 +230,15 @@ class AnswerComposer:
         """The ids that the answer lists. Whoever asks for more than usual wants what is far, too."""
         if limit > LIMIT:
             return ranking.ranked[:limit]
-        return ranking.listed(limit, self._reader.is_page)
+        return ranking.listed(limit, self._reader.manual.is_page)
 
     def _source_notes(self, ranking: Ranking, hits: Sequence[Hit]) -> Iterator[str]:
         """Notes on the documentation behind the answer: pages of other versions, missing sources."""
         minor = self._reader.meta.get("minor", "")
-        pages = [page for hit in hits if hit.is_page and (page := self._reader.page_entry(hit.id))]
+        pages = [page for hit in hits if hit.is_page and (page := self._reader.manual.page_entry(hit.id))]
         for version in sorted({page.version for page in pages} - {minor, ""}):
             yield f"These pages are from the documentation of Blender {version}, not {minor}."
-        if (missing := self._reader.missing_sources) and not ranking.named:
+        if (missing := self._reader.manual.missing_sources) and not ranking.named:
             without = " and the ".join(missing)
             yield f"This base was built without the {without}; `simworlds kb info {minor}` says why."
 

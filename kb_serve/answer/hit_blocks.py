@@ -35,7 +35,7 @@ class HitBlocks:
 
     def whole(self, hit: Hit, row: RankedId, asked: AskedOf = ASKED_NOTHING) -> Iterator[AnswerBlock]:
         """All that is told of a hit, the most useful first."""
-        if self._reader.is_page(hit.id):
+        if self._reader.manual.is_page(hit.id):
             yield from page_blocks(hit.id, self._reader, row.anchor)
         elif symbol := self._reader.symbol(hit.id):
             yield from self._renderer.symbol(symbol, asked)

@@ -14,8 +14,9 @@ if TYPE_CHECKING:
 
     from kb_serve.answer.facts.asked_values import AskedValue
     from kb_serve.answer.hits import Hit
+    from kb_serve.lookups.records import Creation, SymbolEntry
     from kb_serve.rank.ranked_id import RankedId
-    from kb_serve.reader import BaseReader, Creation, SymbolEntry
+    from kb_serve.reader import BaseReader
 
 NAMES = "further names"
 _LINE_TOKENS = 60
@@ -33,7 +34,7 @@ class HitLines:
     ) -> Iterator[AnswerBlock]:
         """A line for each further hit: symbols, then pages. ``asked`` are the question's words."""
         further = list(zip(hits, rows, strict=True))
-        made = self._reader.creations([hit.id for hit in hits if hit.kind == "class"])
+        made = self._reader.makers.creations([hit.id for hit in hits if hit.kind == "class"])
         for title, name, are_pages in (
             ("In Python", NAMES, False),
             ("Pages", "further pages", True),
@@ -63,7 +64,7 @@ class HitLines:
             text = text.removeprefix(f"`{name}`").strip(", ·") or self._instead_of_words(entry)
             nearest = f" — nearest: {', '.join(f'`.{name}`' for name in row.members)}" if row.members else ""
             return clip(f"`{owner + entry.name if owner else path}` {text}", _LINE_TOKENS) + nearest
-        page = self._reader.page_entry(hit.id)
+        page = self._reader.manual.page_entry(hit.id)
         text = first_sentence(said_of(page, self._reader)) if page else ""
         return clip(f"`{hit.id}` ({hit.title}) {text}", _LINE_TOKENS)
 

@@ -32,21 +32,21 @@ class Hit:
 
 def hits_of(rows: Sequence[RankedId], reader: BaseReader) -> tuple[Hit, ...]:
     """What was found, by its ids; all is read at once."""
-    pages = {row.id for row in rows if reader.is_page(row.id)}
+    pages = {row.id for row in rows if reader.manual.is_page(row.id)}
     symbols = [row.id for row in rows if row.id not in pages]
-    reader.page_entry.load(pages)
+    reader.manual.page_entry.load(pages)
     reader.entry.load(symbols)
-    reader.manual_url.load(symbols)
+    reader.manual.manual_url.load(symbols)
     return tuple(_hit(row, reader) for row in rows)
 
 
 def _hit(row: RankedId, reader: BaseReader) -> Hit:
     score = round(row.score, 3)
-    page = reader.page_entry(row.id) if reader.is_page(row.id) else None
+    page = reader.manual.page_entry(row.id) if reader.manual.is_page(row.id) else None
     if page:
         url = page.url + (f"#{row.anchor}" if row.anchor else "")
         return Hit(row.id, page.source, page.title, score, url)
     entry = reader.entry(row.id)
     if entry is None:
         return Hit(row.id, "unknown", row.id, score)
-    return Hit(row.id, entry.kind, entry.label or entry.name, score, reader.manual_url(row.id))
+    return Hit(row.id, entry.kind, entry.label or entry.name, score, reader.manual.manual_url(row.id))

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from kb_build.symbols.records import Section
-    from kb_serve.reader import BaseReader, PageEntry
+    from kb_serve.lookups.records import PageEntry
+    from kb_serve.reader import BaseReader
 
 _SHORT_PAGE = 80  # letters
 _OUTLINE = 16  # sections that a heading lists
@@ -24,10 +25,10 @@ MANUALS_WORDS = "the manual's words"  # what the block is called
 
 def page_blocks(slug: str, reader: BaseReader, anchor: str = "") -> Iterator[AnswerBlock]:
     """A page of the manual or a guide; the section ``anchor`` comes first."""
-    page, entry = reader.page(slug), reader.page_entry(slug)
+    page, entry = reader.manual.page(slug), reader.manual.page_entry(slug)
     if page is None or entry is None:
         return
-    names = reader.label_names(slug)
+    names = reader.manual.label_names(slug)
     above = " › ".join((*page.breadcrumbs, page.title))
     head = f"## {above}{_beside(names, 0, -1)}\n\n{page.url or slug}"
     if len(page.sections) > 2:
@@ -42,13 +43,13 @@ def page_blocks(slug: str, reader: BaseReader, anchor: str = "") -> Iterator[Ans
                 heading += _beside(names, number, -1)
             text = f"{heading}\n\n{with_names(section.text, number, names)}"
             yield AnswerBlock(text, section.title, plain)
-    below = reader.page_children(slug)
+    below = reader.manual.page_children(slug)
     if below:
         yield AnswerBlock(
             "**Pages below**\n" + "\n".join(_page_line(page, reader) for page in below), "pages below"
         )
     elif sum(len(section.text) for section in page.sections) < _SHORT_PAGE:  # it only says where to look
-        linked = [entry for link in page.links if (entry := reader.page_entry(link))]
+        linked = [entry for link in page.links if (entry := reader.manual.page_entry(link))]
         if linked:
             yield AnswerBlock("**See**\n" + "\n".join(_page_line(page, reader) for page in linked), "see")
 
@@ -60,7 +61,7 @@ def _page_line(page: PageEntry, reader: BaseReader) -> str:
 
 def passage_block(path: str, reader: BaseReader) -> Iterator[AnswerBlock]:
     """What the manual says about a symbol."""
-    slug, headings, text = reader.passage_text(path)
+    slug, headings, text = reader.manual.passage_text(path)
     if text:
         engine = next((f"{name} › " for start, name in ENGINES.items() if slug.startswith(start)), "")
         yield AnswerBlock(f"**In the manual** ({engine}{headings})\n{text}", MANUALS_WORDS)
@@ -70,7 +71,7 @@ def said_of(page: PageEntry, reader: BaseReader) -> str:
     """A page's summary; of a page that only lists others, which these are."""
     if summary := own_summary(page):
         return summary
-    titles = ", ".join(child.title for child in reader.page_children(page.slug))
+    titles = ", ".join(child.title for child in reader.manual.page_children(page.slug))
     return f"Contents: {titles}" if titles else ""
 
 

@@ -31,7 +31,8 @@ if TYPE_CHECKING:
 
     from kb_build.symbols.records import Symbol
     from kb_serve.answer.facts.asked_values import AskedOf
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _PUT_TOGETHER = (
     "put together while Blender runs, and not known here: the error for any other value lists them"

@@ -72,7 +72,7 @@ class Changes:
         """``concerns`` says of a path of this Blender whether a change that leads to it, or its class, is wanted."""
         self._reader = reader
         self._concerns = concerns
-        self._versions = reader.history_versions
+        self._versions = reader.history.history_versions
 
     @cached_property
     def ranked(self) -> list[Change]:
@@ -83,7 +83,7 @@ class Changes:
         )
         classes = {path: target for path, _, _, _, target, _ in rows if owner_of(path) == "bpy.types"}
         paths = {path for row in rows for path in (row[0], row[4]) if path}
-        weights = self._reader.weights(list(paths | {owner_of(path) for path in paths}))
+        weights = self._reader.usage.weights(list(paths | {owner_of(path) for path in paths}))
         changes = [
             Change(path, target, how, gone, self._score(path, first, last, gone, target, weights))
             for path, first, last, gone, target, how in rows

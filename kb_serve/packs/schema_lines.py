@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from kb_build.symbols.records import Symbol
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _MEMBERS = 14  # of a class, the heaviest
 _LEAST = 1.0  # the weight of a member that is told of
@@ -46,8 +47,8 @@ class SchemaLines:
     @cached_property
     def _classes(self) -> list[Symbol]:
         """The classes that are wanted, those that scripts use most first."""
-        paths = [path for path, _ in self._reader.data_classes if path.startswith(TYPES)]
-        weights = self._reader.weights(paths)
+        paths = [path for path, _ in self._reader.names.data_classes if path.startswith(TYPES)]
+        weights = self._reader.usage.weights(paths)
         heaviest = sorted(
             (path for path in paths if self._counts(path, weights)), key=lambda path: -weights.get(path, 0)
         )
@@ -125,7 +126,7 @@ class SchemaLines:
         kept = (
             entry for entry in entries if entry.kind in {"property", "function"} and entry.name not in _PLAIN
         )
-        return self._reader.heaviest(kept, 0.0 if self._concerns else _LEAST)
+        return self._reader.usage.heaviest(kept, 0.0 if self._concerns else _LEAST)
 
 
 def _socket(name: str, entry: SymbolEntry) -> str:

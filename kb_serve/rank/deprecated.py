@@ -14,7 +14,7 @@ _REPLACED = re.compile(r"[Rr]eplaced by '?\.(\w+)")
 
 def replacement(path: str, reader: BaseReader) -> str:
     """The member of the same owner that takes the place of a deprecated one; empty for others."""
-    symbol = reader.symbol(path) if path in reader.deprecated_properties else None
+    symbol = reader.symbol(path) if path in reader.names.deprecated_properties else None
     found = _REPLACED.search(symbol.deprecation.note) if symbol and symbol.deprecation else None
     other = f"{symbol.owner}.{found[1]}" if symbol and found else ""
     return other if other and reader.entry(other) else ""

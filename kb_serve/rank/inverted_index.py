@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from kb_build.index.analysis import idf
 from kb_build.schema import DOCUMENT_KINDS, POSTING_BYTES, TOPICS, UNITS
-from kb_serve.kept_rows import KeptRows
+from kb_serve.lookups.kept_rows import KeptRows
 from kb_serve.rank.areas import NO_AREA, area_of
 from simworlds.schemas.value_class import value_class
 
@@ -128,13 +128,13 @@ class InvertedIndex:
             own = {path: math.log1p(weight) for path, weight in weights}
         except (ValueError, TypeError) as error:
             raise self._reader.damaged(error) from error
-        own |= dict.fromkeys(self._reader.slugs, _PAGES)
+        own |= dict.fromkeys(self._reader.manual.slugs, _PAGES)
         return np.array([own.get(ref, 0.0) for ref in self.levels[0].refs], np.float32)
 
     @cached_property
     def symbols(self) -> Scores:
         """1 for each unit that is a symbol, no page."""
-        return np.array([not self._reader.is_page(ref) for ref in self.levels[0].refs], np.float32)
+        return np.array([not self._reader.manual.is_page(ref) for ref in self.levels[0].refs], np.float32)
 
     def idf(self, stem: str) -> float:
         """How much a stem tells, by the units that have it; 0 for an unknown one."""

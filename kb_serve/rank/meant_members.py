@@ -16,8 +16,9 @@ from kb_serve.recognise.names.likely.likely_keywords import EMPTY_WORDS
 if TYPE_CHECKING:
     from collections.abc import Iterator, Set
 
+    from kb_serve.lookups.records import SymbolEntry
     from kb_serve.rank.search import Searcher
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import MissingName
 
 _MOST = 3

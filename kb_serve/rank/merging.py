@@ -190,26 +190,28 @@ class QueryRanker:
         if not ranked or ranked[0].why != "found" or not self._is_of_manual(ranked[0].id):
             return ranked
         least = _HARDLY_WORSE * ranked[0].score
-        near = (row for row in ranked[1:_NEAR] if row.score >= least and not self._reader.is_page(row.id))
+        near = (
+            row for row in ranked[1:_NEAR] if row.score >= least and not self._reader.manual.is_page(row.id)
+        )
         if (first := next(near, None)) is None:
             return ranked
         rest = (row for row in ranked if row is not first)
         return [first._replace(score=ranked[0].score), *rest]
 
     def _is_of_manual(self, slug: str) -> bool:
-        page = self._reader.page_entry(slug) if self._reader.is_page(slug) else None
+        page = self._reader.manual.page_entry(slug) if self._reader.manual.is_page(slug) else None
         return page is not None and page.source == "manual"
 
     def _far_from_functions(self, row: RankedId) -> int:
         """Where an id stands for who wants no operators: what a script can use instead, what explains it, the rest."""
         if row.id.startswith(_OPERATORS):
             return 2
-        return int(row.score < _FAR * SURE or self._reader.is_page(row.id))
+        return int(row.score < _FAR * SURE or self._reader.manual.is_page(row.id))
 
     def _at_its_section(self, row: RankedId, prose: str) -> RankedId:
         """A page that was found as a whole, with the section that is asked for."""
-        is_whole = row.why == "found" and not row.anchor and self._reader.is_page(row.id)
-        page = self._reader.page(row.id) if is_whole else None
+        is_whole = row.why == "found" and not row.anchor and self._reader.manual.is_page(row.id)
+        page = self._reader.manual.page(row.id) if is_whole else None
         if page is None or len(page.sections) == 1:
             return row
         return row._replace(anchor=asked_section(page, self.searcher.words.concepts(prose)))

@@ -80,7 +80,7 @@ class QueryWords:
 
     def _parts_of_class(self, word: str) -> list[str]:
         """The words of the class whose name one is in small letters: ``viewlayer``."""
-        entries = (self._reader.entry(path) for _, path in self._reader.by_key(word))
+        entries = (self._reader.entry(path) for _, path in self._reader.names.by_key(word))
         return next(
             (words(one.name) for one in entries if one and one.kind == "class" and one.name != word), []
         )

@@ -110,7 +110,7 @@ class Searcher:
         number, topic = ranked.numbers[place], ranked.topics[place]
         ref = units.refs[number]
         members: list[str] = []
-        if topic >= 0 and topics.refs[topic] == ref and not self._reader.is_page(ref):
+        if topic >= 0 and topics.refs[topic] == ref and not self._reader.manual.is_page(ref):
             below = (ranked.topics == topic).nonzero()[0][: _MEMBERS + 1].tolist()
             near = [
                 units.refs[ranked.numbers[other]]

@@ -169,7 +169,7 @@ class MissingNames:
         """Adds the name on other classes (``CollectionObjects.link``), similar ones first; whether there is any."""
         rows = [
             entry
-            for entry in self._reader.by_name(missing.name)
+            for entry in self._reader.names.by_name(missing.name)
             if entry.group != "ui" and "." in entry.owner
         ]
         if not 0 < len(rows) <= _MANY:

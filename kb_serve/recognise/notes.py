@@ -109,7 +109,7 @@ class Notes:
 
     def _option_of(self, symbol: RemovedSymbol) -> str:
         """The option of the build that an operator needs of which it is not known since when Blender has it."""
-        _, lacked = ("", "") if symbol.gone else self._reader.arrival(symbol.path)
+        _, lacked = ("", "") if symbol.gone else self._reader.history.arrival(symbol.path)
         return option_of(symbol.path, self._build_options) if lacked else ""
 
     @cached_property
@@ -119,10 +119,10 @@ class Notes:
 
     def _span(self, symbol: RemovedSymbol) -> str:
         if not symbol.gone:
-            _, lacked = self._reader.arrival(symbol.path)
+            _, lacked = self._reader.history.arrival(symbol.path)
             too = f" ({lacked} lacks it)" if lacked not in {"", self._version} else ""
             return f"new in {symbol.first}{' or a little before' if lacked else ''}{too}"
-        versions = self._reader.history_versions
+        versions = self._reader.history.history_versions
         if symbol.is_dated(versions):
             last = f" (last in {symbol.last})" if symbol.was_last(versions) else ""
             return f"removed in {symbol.gone}{last}"
@@ -218,16 +218,16 @@ class Notes:
 
         What a class inherited in other versions is not: one without a base may have lost it.
         """
-        versions = self._reader.history_versions
+        versions = self._reader.history.history_versions
         # Of the interface's classes the history has those alone that scripts use.
         if not versions or owner.startswith(_UNLISTED) or interface_part(name):
             return ""
         entry = self._reader.entry(owner)
         if entry is not None and entry.base in {"", STRUCT}:
-            owners = {found.owner for found in self._reader.by_name(name)}
-            owners |= {path.rpartition(".")[0] for path in self._reader.removed_named(name)}
+            owners = {found.owner for found in self._reader.names.by_name(name)}
+            owners |= {path.rpartition(".")[0] for path in self._reader.history.removed_named(name)}
             owners -= {owner, STRUCT}
             if any(self._reader.subclasses(other) for other in owners):
                 return ""
         aside = next((f" ({told} aside)" for start, told in _ASIDE.items() if owner.startswith(start)), "")
-        return f", and never had it from {self._reader.since(owner) or versions[0]} to {versions[-1]}{aside}"
+        return f", and never had it from {self._reader.history.since(owner) or versions[0]} to {versions[-1]}{aside}"

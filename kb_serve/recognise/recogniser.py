@@ -116,7 +116,7 @@ class Recogniser:
         chains = own.without(with_bindings(query, find_chains(query)))
         recognition.notes += (
             _UNKNOWN_MODULE.format(version=self._reader.meta.get("minor", ""), module=module)
-            for module in sorted(self._reader.unknown_modules.intersection(tokens(query)))
+            for module in sorted(self._reader.history.unknown_modules.intersection(tokens(query)))
         )
         for identifier in ids_in_urls(query, self._reader):
             recognition.add(identifier, 1.0, "address")
@@ -177,8 +177,8 @@ class Recogniser:
         is_here = any(entry is not None and entry.kind in {"module", "class"} for entry in known)
         return (
             is_here
-            or name in self._reader.unknown_modules
-            or any(map(self._reader.removed, (name, TYPES + name)))
+            or name in self._reader.history.unknown_modules
+            or any(map(self._reader.history.removed, (name, TYPES + name)))
         )
 
     def _removed_values(self, text: str, recognition: Recognition) -> None:
@@ -194,7 +194,7 @@ class Recogniser:
     def _values_of_nothing(self, query: str, recognition: Recognition) -> None:
         """Adds enum items that nothing has now, where no use in the query has told of what they were removed."""
         for value in self._enum_values.values(without_callers_names(without_wording(query))):
-            if _is_told(value, recognition) or "_" not in value or self._reader.enum_owners(key(value)):
+            if _is_told(value, recognition) or "_" not in value or self._reader.names.enum_owners(key(value)):
                 continue
             for removed in self._removed.spelled(value):
                 if removed.path.endswith(f":{value}"):
@@ -212,7 +212,7 @@ class Recogniser:
             for rank, target in enumerate(removed.targets[:_FEW]):
                 recognition.add(plain_path(target), 1.0 - 0.01 * rank - later, "successor")
                 _, is_argument, item = target.partition("):")
-                for cls, maker in self._reader.made_by_choice(item) if is_argument else ():
+                for cls, maker in self._reader.makers.made_by_choice(item) if is_argument else ():
                     if maker == plain_path(target):
                         recognition.add(cls, 0.985 - 0.01 * rank - later, "made with the successor")
             if not removed.targets:

@@ -19,7 +19,8 @@ from kb_build.summaries.types import PageSummary
 from kb_build.symbols.records import Deprecation, EnumItem, Link, Page, Parameter, Section, Symbol
 from kb_build.versions.removed_symbols import RemovedSymbols
 from kb_serve.knowledge_base import KnowledgeBase
-from kb_serve.reader import BaseReader, Successor
+from kb_serve.lookups.records import Successor
+from kb_serve.reader import BaseReader
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -105,12 +106,12 @@ def test_a_symbol_reads_back_as_it_was_written(small: BaseReader, symbol: Symbol
 
 
 def test_a_page_reads_back_whole(small: BaseReader) -> None:
-    assert small.page(PAGE.slug) == PAGE
-    entry = small.page_entry(PAGE.slug)
+    assert small.manual.page(PAGE.slug) == PAGE
+    entry = small.manual.page_entry(PAGE.slug)
     assert entry is not None
     assert (entry.parent, entry.summary, entry.summary_method) == (TOP.slug, "In short.", "extractive")
-    assert [child.slug for child in small.page_children(TOP.slug)] == [PAGE.slug]
-    assert small.page_entry("nowhere") is None
+    assert [child.slug for child in small.manual.page_children(TOP.slug)] == [PAGE.slug]
+    assert small.manual.page_entry("nowhere") is None
 
 
 @pytest.mark.parametrize(
@@ -127,35 +128,35 @@ def test_a_page_reads_back_whole(small: BaseReader) -> None:
     ],
 )  # fmt: skip
 def test_every_usual_spelling_is_kept(small: BaseReader, spelled: str, identifier: str) -> None:
-    assert identifier in {row[1] for row in small.by_key(key(spelled))}
+    assert identifier in {row[1] for row in small.names.by_key(key(spelled))}
 
 
 def test_fuller_spellings_come_first(small: BaseReader) -> None:
-    forms = [form for form, _ in small.by_key(key("ClothSettings"))]
+    forms = [form for form, _ in small.names.by_key(key("ClothSettings"))]
     assert forms == sorted(forms)
 
 
 def test_labels_of_panels_are_no_names(small: BaseReader) -> None:
-    assert PANEL.path not in {row[1] for row in small.by_key(key("X"))}
+    assert PANEL.path not in {row[1] for row in small.names.by_key(key("X"))}
 
 
 def test_enum_items_lead_to_their_property_or_argument(small: BaseReader) -> None:
-    assert small.enum_owners("high") == [(STEPS.path, "HIGH", "High")]
-    assert small.enum_owners("cloth") == [(f"{ADD.path}(type)", "CLOTH", "Cloth")]
+    assert small.names.enum_owners("high") == [(STEPS.path, "HIGH", "High")]
+    assert small.names.enum_owners("cloth") == [(f"{ADD.path}(type)", "CLOTH", "Cloth")]
 
 
 def test_links_meta_and_other_versions_read_back(small: BaseReader) -> None:
-    assert small.manual_links(STEPS.path) == ("physics/cloth/index#steps",)
-    assert small.symbols_of_page("physics/index") == [ADD.path]
+    assert small.manual.manual_links(STEPS.path) == ("physics/cloth/index#steps",)
+    assert small.manual.symbols_of_page("physics/index") == [ADD.path]
     assert small.meta == {"minor": "5.1", "fingerprint": "f"}
-    assert small.removed("bpy.types.ClothSettings.old") == ("4.2", "4.5", "5.0")
-    assert small.removed_by_key(key("ClothSettings.old")) == ["bpy.types.ClothSettings.old"]
-    assert small.successors("bpy.types.ClothSettings.older") == [
+    assert small.history.removed("bpy.types.ClothSettings.old") == ("4.2", "4.5", "5.0")
+    assert small.history.removed_by_key(key("ClothSettings.old")) == ["bpy.types.ClothSettings.old"]
+    assert small.history.successors("bpy.types.ClothSettings.older") == [
         Successor(STEPS.path, "halve it", "5.0", "notes"), Successor(CLOTH.path, "", "5.0", "notes"),
     ]  # fmt: skip
-    assert small.similar_names("bpy.types.ClothSettings.old") == [(STEPS.path, 0.9)]
-    assert (small.since(STEPS.path), small.since(CLOTH.path)) == ("5.0", "")
-    assert (small.arrival(ADD.path), small.since(ADD.path)) == (("4.2", "3.4"), "")
+    assert small.history.similar_names("bpy.types.ClothSettings.old") == [(STEPS.path, 0.9)]
+    assert (small.history.since(STEPS.path), small.history.since(CLOTH.path)) == ("5.0", "")
+    assert (small.history.arrival(ADD.path), small.history.since(ADD.path)) == (("4.2", "3.4"), "")
 
 
 def test_the_file_has_our_application_id_and_is_sound(path: Path) -> None:

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
     from kb_serve.answer.docs_answer import DocsAnswer
     from kb_serve.knowledge_base import KnowledgeBase
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 TYPES = "bpy.types."
 SEED = 20

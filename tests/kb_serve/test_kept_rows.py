@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.kept_rows import KeptRows
+from kb_serve.lookups.kept_rows import KeptRows
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

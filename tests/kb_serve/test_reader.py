@@ -82,15 +82,15 @@ def test_entries_and_records_agree(reader: BaseReader) -> None:
 def test_unknown_symbols_and_pages_are_none(reader: BaseReader, text: str) -> None:
     assert reader.entry(text) is None
     assert reader.symbol(text) is None
-    assert reader.page(text) is None
-    assert reader.page_entry(text) is None
-    assert reader.removed(text) is None
+    assert reader.manual.page(text) is None
+    assert reader.manual.page_entry(text) is None
+    assert reader.history.removed(text) is None
     assert not reader.members(text) or text == ""
-    assert reader.by_name(text) == ()
-    assert reader.manual_links(text) == ()
-    assert reader.successors(text) == []
-    assert reader.similar_names(text) == []
-    assert reader.since(text) == ""
+    assert reader.names.by_name(text) == ()
+    assert reader.manual.manual_links(text) == ()
+    assert reader.history.successors(text) == []
+    assert reader.history.similar_names(text) == []
+    assert reader.history.since(text) == ""
 
 
 def test_what_is_marked_stands_in_the_line(reader: BaseReader) -> None:
@@ -106,13 +106,13 @@ def test_what_is_marked_stands_in_the_line(reader: BaseReader) -> None:
 
 
 def test_operators_are_found_by_what_they_take(reader: BaseReader) -> None:
-    assert "bpy.ops.mesh.primitive_cube_add" in reader.operators_taking("enter_editmode")
-    assert reader.operators_taking("enter_edit") == []
+    assert "bpy.ops.mesh.primitive_cube_add" in reader.names.operators_taking("enter_editmode")
+    assert reader.names.operators_taking("enter_edit") == []
     for path in paths(reader, "operator", count=100):
         symbol = reader.symbol(path)
         for parameter in symbol.parameters if symbol else ():
-            assert path in reader.operators_taking(parameter.name)
-            assert parameter.name in reader.operator_arguments
+            assert path in reader.names.operators_taking(parameter.name)
+            assert parameter.name in reader.names.operator_arguments
 
 
 def test_no_look_up_reads_a_whole_table(base: Path) -> None:
@@ -120,13 +120,14 @@ def test_no_look_up_reads_a_whole_table(base: Path) -> None:
     calls: list[Callable[[BaseReader], object]] = [
         lambda r: r.entry("bpy.types.Object"), lambda r: r.members("bpy.types.Object"),
         lambda r: r.subclasses("bpy.types.Modifier"), lambda r: r.symbol("bpy.types.Object"),
-        lambda r: r.by_name("quality"), lambda r: r.by_key("quality"), lambda r: r.enum_owners("emitter"),
-        lambda r: r.removed("x"), lambda r: r.removed_by_key("x"), lambda r: r.successors("x"),
-        lambda r: r.similar_names("x"), lambda r: r.since("x"),
-        lambda r: r.manual_links("bpy.types.Object"), lambda r: r.operators_taking("type"),
-            lambda r: r.manual_url("bpy.types.Object"), lambda r: r.passage_text("bpy.types.Object"),
-        lambda r: r.page_entry("physics/index"), lambda r: r.page_children("physics/index"),
-        lambda r: r.symbols_of_page("physics/index"), lambda r: r.page("physics/cloth/introduction"),
+        lambda r: r.names.by_name("quality"), lambda r: r.names.by_key("quality"),
+        lambda r: r.names.enum_owners("emitter"),
+        lambda r: r.history.removed("x"), lambda r: r.history.removed_by_key("x"), lambda r: r.history.successors("x"),
+        lambda r: r.history.similar_names("x"), lambda r: r.history.since("x"),
+        lambda r: r.manual.manual_links("bpy.types.Object"), lambda r: r.names.operators_taking("type"),
+            lambda r: r.manual.manual_url("bpy.types.Object"), lambda r: r.manual.passage_text("bpy.types.Object"),
+        lambda r: r.manual.page_entry("physics/index"), lambda r: r.manual.page_children("physics/index"),
+        lambda r: r.manual.symbols_of_page("physics/index"), lambda r: r.manual.page("physics/cloth/introduction"),
     ]  # fmt: skip
     with closing(BaseReader(base)) as reader, closing(sqlite3.connect(base)) as file:
         asked: list[str] = []
@@ -276,7 +277,7 @@ def test_a_path_with_odd_characters_is_opened(base: Path, tmp_path: Path) -> Non
     folder.mkdir()
     path = Path(shutil.copy(base, folder / "kb.sqlite"))
     with closing(BaseReader(path)) as reader:
-        assert reader.by_key(key("ClothSettings.quality"))
+        assert reader.names.by_key(key("ClothSettings.quality"))
 
 
 def test_the_file_says_whose_it_is(base: Path) -> None:

@@ -127,7 +127,7 @@ def _axes(place: Place) -> Iterator[Change]:
     for row, match in place.gone_like(_AXIS):
         value = row.node.value if isinstance(row.node, ast.keyword) else None
         name = f"{match[1]}_axis"
-        targets = [one.target for one in place.script.names.reader.successors(match[0])]
+        targets = [one.target for one in place.script.names.reader.history.successors(match[0])]
         if isinstance(value, ast.Constant) and value.value in _AXES and any(name in one for one in targets):
             text = f'{name}="{_AXES[value.value]}"'
             yield place.change(REWRITE.id, match[0], [place.write(row.node, text)])

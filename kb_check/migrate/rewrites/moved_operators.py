@@ -25,7 +25,7 @@ def _propose(place: Place) -> Iterator[Change]:
             if not isinstance(around, ast.Attribute):
                 continue
             symbol, node = f"bpy.ops.{row.value}.{around.attr}", around
-        successors = reader.successors(symbol)
+        successors = reader.history.successors(symbol)
         if (
             not isinstance(node, ast.Attribute)
             or not isinstance(node.value, ast.Attribute)
@@ -46,7 +46,7 @@ def _renamed_keywords(place: Place, call: ast.Call, old: str, new: str) -> Itera
     """What the new operator calls the keywords of the old one, where only the name differs."""
     reader = place.script.names.reader
     for keyword in call.keywords:
-        rows = reader.successors(f"{old}({keyword.arg})")
+        rows = reader.history.successors(f"{old}({keyword.arg})")
         if len(rows) == 1 and not rows[0].how and rows[0].target.startswith(f"{new}("):
             name = rows[0].target.removeprefix(f"{new}(").removesuffix(")")
             if name != keyword.arg and (edit := place.script.renamed(keyword, name)):

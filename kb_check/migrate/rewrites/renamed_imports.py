@@ -19,7 +19,7 @@ def _propose(place: Place) -> Iterator[Change]:
         alias, statement = row.node, place.parent(row.node)
         if not isinstance(alias, ast.alias) or not isinstance(statement, ast.ImportFrom):
             continue
-        successors = place.script.names.reader.successors(match[0])
+        successors = place.script.names.reader.history.successors(match[0])
         if len(successors) != 1 or successors[0].how:
             continue
         module, _, name = successors[0].target.rpartition(".")

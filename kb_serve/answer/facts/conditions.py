@@ -29,7 +29,9 @@ def condition_lines(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
     """
     if symbol.kind not in {"property", "operator"}:
         return
-    clauses = [list(rows) for _, rows in groupby(reader.conditions_of(symbol.path), lambda row: row.clause)]
+    clauses = [
+        list(rows) for _, rows in groupby(reader.settings.conditions_of(symbol.path), lambda row: row.clause)
+    ]
     owners = {entry.path for entry in reader.lineage(symbol.owner)}
     if idle := [rows for rows in clauses if rows[0].otherwise == "idle"]:
         yield f"has no effect unless {_joined(idle, owners, reader)}"
@@ -42,9 +44,9 @@ def condition_lines(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
         offers = "offered by" if symbol.kind == "operator" else "shown in"
         yield f"{offers} Blender's panels only if {_joined(hidden, owners, reader)}"
     if symbol.type == "boolean":
-        if switched := reader.depending_on(symbol.path, TEST_ON, "greyed", "hidden"):
+        if switched := reader.settings.depending_on(symbol.path, TEST_ON, "greyed", "hidden"):
             yield f"while it is off, Blender's panels grey out or hide {_listed(switched, symbol.owner, reader)}"
-        if switched := reader.depending_on(symbol.path, TEST_ON, "idle"):
+        if switched := reader.settings.depending_on(symbol.path, TEST_ON, "idle"):
             yield f"while it is off, there is no effect of {_listed(switched, symbol.owner, reader)}"
 
 
@@ -52,7 +54,7 @@ def switches_off(symbol: Symbol, reader: BaseReader) -> Iterator[tuple[Symbol, b
     """The settings that panels ask for before they let a property be set, or an operator be run, and that new things
     have otherwise: each with the value that it must get.
     """
-    for _, rows in groupby(reader.conditions_of(symbol.path), lambda row: row.clause):
+    for _, rows in groupby(reader.settings.conditions_of(symbol.path), lambda row: row.clause):
         row, *more = rows
         gate = None if more or not _contrary(row, reader) else reader.symbol(row.gate)
         if gate is not None and gate.type == "boolean":

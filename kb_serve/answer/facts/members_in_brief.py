@@ -11,7 +11,8 @@ from kb_build.symbols.lines import SET
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 MOST_SETTINGS = 10
 _MOST_INPUTS = 8
@@ -49,7 +50,7 @@ def settings_of(cls: str, reader: BaseReader, most: int = MOST_SETTINGS) -> str:
 def own_settings(cls: str, most: int, reader: BaseReader) -> str:
     """The heaviest settings that a class itself has, and that count at all, each as above; empty for none."""
     entries, _ = _heaviest_settings(cls, reader)
-    own = reader.heaviest((entry for entry in entries if entry.owner == cls), _LEAST)
+    own = reader.usage.heaviest((entry for entry in entries if entry.owner == cls), _LEAST)
     return _in_words(own[:most], {})
 
 
@@ -64,8 +65,8 @@ def _in_words(entries: Iterable[SymbolEntry], parts: Mapping[str, SymbolEntry]) 
 
 def _is_of_display(entry: SymbolEntry, reader: BaseReader) -> bool:
     """Whether the manual explains a setting where it explains how a thing looks in the viewport alone."""
-    passage = reader.passage(entry.path)
-    page = reader.page(passage[0]) if passage else None
+    passage = reader.manual.passage(entry.path)
+    page = reader.manual.page(passage[0]) if passage else None
     return page is not None and passage is not None and page.sections[passage[1]].title == _DISPLAY
 
 
@@ -74,7 +75,7 @@ def inputs_of(node: str, reader: BaseReader) -> str:
     known = {
         entry: match for entry in reader.members(node).values() if (match := _INPUT.fullmatch(entry.head))
     }
-    heaviest = reader.heaviest(known)[:_MOST_INPUTS]
+    heaviest = reader.usage.heaviest(known)[:_MOST_INPUTS]
     return ", ".join(f"`{known[entry][1]}.default_value`{known[entry][2]}" for entry in heaviest)
 
 
@@ -102,7 +103,7 @@ def _heaviest_settings(cls: str, reader: BaseReader) -> tuple[list[SymbolEntry],
     # What only stores which part it is counts for nothing beside that.
     stored = tuple(f"{part.name}_" for part in parts.values())
     entries = [entry for entry in entries if not (stored and entry.name.startswith(stored))]
-    heaviest = reader.heaviest(entries)
+    heaviest = reader.usage.heaviest(entries)
     # What a thing is between comes first, without which it does nothing: ``object1`` and ``object2``.
     ends = sorted(
         (entry for entry in heaviest if entry.type == "pointer" and _ENDS.search(entry.name)),

@@ -19,7 +19,7 @@ _EDITORS = {
 
 def use_text(path: str, reached: str, reader: BaseReader) -> str:
     """The clearest use of a symbol; empty for none. ``reached`` is how a script comes to the symbol, if known."""
-    uses = reader.uses(path)
+    uses = reader.usage.uses(path)
     if not uses:
         return ""
     use = uses[0]

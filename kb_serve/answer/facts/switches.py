@@ -50,7 +50,7 @@ def _switched_by(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
 
 def _chosen_by(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
     """The enumeration beside a property that chooses between it and others: its values are called as they are."""
-    for path, value, _ in reader.enum_owners(key(symbol.name)):
+    for path, value, _ in reader.names.enum_owners(key(symbol.name)):
         enum = reader.symbol(path) if path.rpartition(".")[0] == symbol.owner else None
         if enum is None or value != symbol.name.upper() or enum.name == symbol.name:
             continue

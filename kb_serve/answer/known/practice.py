@@ -94,7 +94,7 @@ class Practice:
         """Symbol → the pages that explain it, of those that something is known of."""
         paths = {path for advice in ADVICE for path in (advice.explained, advice.chapters_of) if path}
         return {
-            path: frozenset(target.partition("#")[0] for target in self._reader.manual_links(path))
+            path: frozenset(target.partition("#")[0] for target in self._reader.manual.manual_links(path))
             for path in (*paths, NODES_MODIFIER)
         }
 

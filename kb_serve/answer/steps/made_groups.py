@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
     from kb_serve.answer.steps.main_classes import MainClasses
     from kb_serve.answer.steps.names.topic_names import TopicNames
-    from kb_serve.reader import BaseReader, Creation
+    from kb_serve.lookups.records import Creation
+    from kb_serve.reader import BaseReader
 
 _MAKERS = 3
 _IN_A_NODE = ".nodes["  # in a call that makes what a node holds

@@ -12,7 +12,8 @@ from kb_serve.interface import is_of_interface
 
 if TYPE_CHECKING:
     from kb_serve.answer.steps.names.topic_names import TopicNames
-    from kb_serve.reader import BaseReader, Creation
+    from kb_serve.lookups.records import Creation
+    from kb_serve.reader import BaseReader
 
 _LEAST_SHARE = 0.25  # of the heaviest class's weight
 _MODIFIER = f"{TYPES}Modifier"  # of objects
@@ -28,7 +29,7 @@ class MainClasses:
     def __init__(self, reader: BaseReader, names: TopicNames) -> None:
         self._reader = reader
         self._names = names
-        made = reader.creations(list(names.classes))
+        made = reader.makers.creations(list(names.classes))
         self.creations = {
             path: one
             for path, one in made.items()

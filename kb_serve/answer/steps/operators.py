@@ -71,7 +71,7 @@ def runs(names: TopicNames, scene: NewScene, *, is_cached: bool, is_made: bool) 
     modifier needs none of an armature's operators.
     """
     reader = scene.reader
-    weights = reader.weights(list(names.operators))
+    weights = reader.usage.weights(list(names.operators))
     runnable = {path: symbol for path in names.operators if _runs(path) and (symbol := reader.symbol(path))}
     others = _modules_of_others(runnable, scene)
     operators = [
@@ -117,11 +117,11 @@ def _of_modifiers(names: TopicNames, scene: NewScene) -> list[str]:
             continue
         paths = [
             path
-            for path in reader.operators_taking(_MODIFIER)
+            for path in reader.names.operators_taking(_MODIFIER)
             if _first_word(path) == _kind_of(cls, reader) and _runs(path)
         ]
         entries = [entry for path in paths if (entry := reader.entry(path))]
-        found += [entry.path for entry in reader.heaviest(entries)[:_MOST_OF_MODIFIERS]]
+        found += [entry.path for entry in reader.usage.heaviest(entries)[:_MOST_OF_MODIFIERS]]
     return found
 
 
@@ -191,11 +191,11 @@ def _wants_a_path(operator: Symbol) -> bool:
 
 def _bakes(reader: BaseReader) -> Iterator[str]:
     """The heaviest operator of the page that explains the cache."""
-    for target in reader.manual_links(POINT_CACHE):
-        paths = reader.symbols_of_page(target.partition("#")[0])
+    for target in reader.manual.manual_links(POINT_CACHE):
+        paths = reader.manual.symbols_of_page(target.partition("#")[0])
         entries = (reader.entry(path) for path in paths if _runs(path))
         operators = [entry for entry in entries if entry and entry.kind == "operator"]
-        yield from (entry.path for entry in reader.heaviest(operators)[:1])
+        yield from (entry.path for entry in reader.usage.heaviest(operators)[:1])
 
 
 def _line(operator: Symbol, reader: BaseReader, argument: str = "") -> str:

@@ -31,7 +31,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from kb_serve.answer.steps.names.topic_names import TopicNames
-    from kb_serve.reader import BaseReader, Creation
+    from kb_serve.lookups.records import Creation
+    from kb_serve.reader import BaseReader
 
 _MOST_TOKENS = 1_150  # of all steps
 _FUNCTIONS = 3
@@ -92,7 +93,7 @@ class Steps:
         """Functions that every thing has and that are called as the topic is, ``keyframe_insert``, or that every
         data-block has and that do what an operator of the topic does: ``asset_mark``, as ``asset.mark``.
         """
-        paths = [path for name in self._names.stems() for path in self._reader.functions_named(name)]
+        paths = [path for name in self._names.stems() for path in self._reader.names.functions_named(name)]
         paths = [path for path in paths if path.startswith(f"{STRUCT}.")]
         alike = (path.removeprefix(OPERATORS).replace(".", "_") for path in self._names.operators)
         paths += [f"{ID}.{name}" for name in alike]
@@ -101,7 +102,7 @@ class Steps:
             for path in dict.fromkeys(paths)
             if UNDO.isdisjoint(path.rpartition(".")[2].split("_"))
         )
-        for entry in self._reader.heaviest(entry for entry in entries if entry)[:_FUNCTIONS]:
+        for entry in self._reader.usage.heaviest(entry for entry in entries if entry)[:_FUNCTIONS]:
             yield f"`obj.{call_of(entry)}` — {entry.line.partition(' — ')[2]}"
             for cls in filter(self._names.is_called, self._main.paths[:1]):
                 yield from inserted(cls, entry.name, self._scene)

@@ -70,11 +70,11 @@ class TopicMembers:
         words = dict.fromkeys((frozenset(terms(title)), frozenset(terms(last))))
         if is_kind:
             del words[frozenset(terms(last))]
-        has_pages = bool(self._reader.page_children(slug))
+        has_pages = bool(self._reader.manual.page_children(slug))
         names = TopicNames(
             frozenset({key(title), key(last)}),
             tuple(filter(None, words)),
-            frozenset(() if has_pages else self._reader.symbols_of_page(slug)),
+            frozenset(() if has_pages else self._reader.manual.symbols_of_page(slug)),
             title=key(title),
         )
         if len(terms(title)) > 1 and names.explained:
@@ -85,7 +85,7 @@ class TopicMembers:
         """What a topic's pages explain, and how near it is to the topic."""
         nearness = dict.fromkeys(of_kind, _NEAR)
         for below, depth in subtree(slug, self._reader).items():
-            for path in self._reader.symbols_of_page(below):
+            for path in self._reader.manual.symbols_of_page(below):
                 nearness.setdefault(path, _NEAR if depth < 2 else _FAR)
         return nearness
 
@@ -118,24 +118,27 @@ class TopicMembers:
         """Whether the address of a page that explains classes says only of what kind these are, and the title which
         ones of it: modifiers, of F-curves.
         """
-        explains = any(path in self._classes for path in self._reader.symbols_of_page(slug))
+        explains = any(path in self._classes for path in self._reader.manual.symbols_of_page(slug))
         named, kind = terms(title), terms(last)
         is_shorter = len(set(kind)) < len(set(named))
         return (
-            explains and not self._reader.page_children(slug) and is_shorter and named[-len(kind) :] == kind
+            explains
+            and not self._reader.manual.page_children(slug)
+            and is_shorter
+            and named[-len(kind) :] == kind
         )
 
     def _is_of_another_part(self, path: str, slug: str) -> bool:
         """Whether pages of other parts of the manual alone explain something."""
-        parts = {link.partition("/")[0] for link in self._reader.manual_links(path)}
+        parts = {link.partition("/")[0] for link in self._reader.manual.manual_links(path)}
         return bool(parts) and slug.partition("/")[0] not in parts
 
     def _operators_of(self, module: str, slug: str) -> list[str]:
         """The operators of a module; none if most are an editor's that other parts of the manual explain: what the Text
         Editor does to texts is nothing that is done to objects.
         """
-        paths = [*self._reader.operators_of(module)]
-        explained = [path for path in paths if self._reader.manual_links(path)]
+        paths = [*self._reader.names.operators_of(module)]
+        explained = [path for path in paths if self._reader.manual.manual_links(path)]
         elsewhere = sum(self._is_of_another_part(path, slug) for path in explained)
         if elsewhere <= len(explained) / 2:
             return paths
@@ -157,20 +160,20 @@ class TopicMembers:
         chapter that is called as its module and a word of the title, as that which renders.
         """
         names = {"_".join(words) for title in titles for words in (title.lower().split(), terms(title))}
-        called = [entry for name in names for entry in self._reader.by_name(name)]
+        called = [entry for name in names for entry in self._reader.names.by_name(name)]
         words = [word for title in titles for word in title.lower().split()]
-        does = {path.rpartition(".")[2] for path in self._reader.symbols_of_page(slug)}
+        does = {path.rpartition(".")[2] for path in self._reader.manual.symbols_of_page(slug)}
         if does.isdisjoint((*words, *terms(" ".join(words)))):
             own = filter(None, (self._reader.entry(f"{OPERATORS}{word}.{word}") for word in words))
             called += [entry for entry in own if self._is_of_chapter(entry.path, slug)]
         for entry in called:
-            parts = {link.partition("/")[0] for link in self._reader.manual_links(entry.path)}
+            parts = {link.partition("/")[0] for link in self._reader.manual.manual_links(entry.path)}
             if entry.kind == "operator" and slug.partition("/")[0] in parts:
                 yield entry.path
 
     def _is_of_chapter(self, path: str, slug: str) -> bool:
         """Whether the first page of a chapter that a page is in explains something."""
-        links = (link.partition("#")[0] for link in self._reader.manual_links(path))
+        links = (link.partition("#")[0] for link in self._reader.manual.manual_links(path))
         return any(link.endswith("index") and slug.startswith(link.removesuffix("index")) for link in links)
 
     def _worked_on(self, slug: str, paths: Collection[str]) -> Iterator[str]:
@@ -182,9 +185,9 @@ class TopicMembers:
         ]
         needed = Counter(maker for operator in operators for maker in _makers_needed(operator))
         (variable, name), count = next(iter(needed.most_common(1)), (("", ""), 0))
-        if not (name and self._reader.page_children(slug)) or count < len(operators) / 2:
+        if not (name and self._reader.manual.page_children(slug)) or count < len(operators) / 2:
             return
-        made = self._reader.creations([*self._classes.keys() & paths]).values()
+        made = self._reader.makers.creations([*self._classes.keys() & paths]).values()
         maker = self._reader.symbol(f"{class_called(variable)}.{name}")
         for result in maker.returns if maker else ():
             holder = self._reader.symbol(f"{TYPES}{result.type}")
@@ -193,17 +196,17 @@ class TopicMembers:
             for entry in self._reader.members(holder.path).values():
                 if entry.type == "collection":
                     kinds = [kind.path for kind in self._reader.descendants(f"{TYPES}{entry.target}")]
-                    yield from self._reader.creations(kinds)
+                    yield from self._reader.makers.creations(kinds)
 
     def _is_on_other_pages(self, path: str, slug: str) -> bool:
         """Whether pages explain a class, but none of a page's chapter, nor of those that this is in; nodes of several
         kinds of trees are explained aside.
         """
-        made = self._reader.creations([path]).get(path)
+        made = self._reader.makers.creations([path]).get(path)
         # What it is an element of, where no page explains it itself.
         is_element = made is not None and not (made.choice or made.call.startswith("bpy."))
         by = made.maker.rpartition(".")[0] if made and is_element else ""
-        told = self._reader.manual_links(path) or self._reader.manual_links(by)
+        told = self._reader.manual.manual_links(path) or self._reader.manual.manual_links(by)
         links = [link.partition("#")[0] for link in told]
         near = [slug.removesuffix("index")]
         if slug.startswith(tuple(CHAPTERS.values())):
@@ -215,21 +218,21 @@ class TopicMembers:
     def _of_kind(self, slug: str, title: str) -> frozenset[str]:
         """What the one other page explains that is called so and says that this is a modifier or constraint."""
         keys = [topic_key(f"{title} {kind}") for kind in SHORT_FOR]
-        slugs = {found for each in keys for _, found in self._reader.by_key(each)} - {slug}
-        return frozenset(self._reader.symbols_of_page(slugs.pop())) if len(slugs) == 1 else frozenset()
+        slugs = {found for each in keys for _, found in self._reader.names.by_key(each)} - {slug}
+        return frozenset(self._reader.manual.symbols_of_page(slugs.pop())) if len(slugs) == 1 else frozenset()
 
     @cached_property
     def _classes(self) -> dict[str, frozenset[str]]:
         """Every data class with the words of its name."""
-        return {path: frozenset(terms(name)) for path, name in self._reader.data_classes}
+        return {path: frozenset(terms(name)) for path, name in self._reader.names.data_classes}
 
     def _weights(self, paths: Collection[str]) -> dict[str, float]:
         """What symbols count: themselves, and of a class the heaviest of its members."""
-        own = self._reader.weights(list(paths))
+        own = self._reader.usage.weights(list(paths))
         totals: dict[str, float] = {}
         for path in paths:
             totals[path] = 0.5 + own.get(path, 0.0)
-        members = self._reader.member_weights([path for path in paths if path in self._classes])
+        members = self._reader.usage.member_weights([path for path in paths if path in self._classes])
         for path, heaviest in members.items():
             totals[path] += sum(sorted(heaviest, reverse=True)[:_MEMBERS]) / _MEMBERS
         return totals

@@ -94,7 +94,7 @@ class TopicPages:
         if slug := self._in_place(plain, made):
             return slug
         if OF_CODE.isdisjoint(plain):  # then both are looked up, as they stand
-            self._reader.by_key.load((*keys_of(plain), *keys_of(plain.rpartition(" ")[0])))
+            self._reader.names.by_key.load((*keys_of(plain), *keys_of(plain.rpartition(" ")[0])))
         return (
             self._titles.called(plain)
             or self._titles.called(made)
@@ -110,7 +110,7 @@ class TopicPages:
         """The page on what makes one thing from another, by what it makes of which: a mesh from a curve."""
         turned = _MADE_FROM.fullmatch(plain)
         slug = self._titles.called(f"{turned['source']} to {turned['made']}") if turned else ""
-        page = self._reader.page_entry(slug) if slug else None
+        page = self._reader.manual.page_entry(slug) if slug else None
         return slug if page is not None and " to " in page.title else ""
 
     def _in_place(self, plain: str, made: str) -> str:
@@ -133,7 +133,9 @@ class TopicPages:
         data, _, last = plain.rpartition(" ")
         slug = self._titles.called(data) if topic_key(last) == topic_key(OF_OBJECTS) else ""
         return (
-            slug if slug and any(map(self._reader.is_object_data, self._reader.symbols_of_page(slug))) else ""
+            slug
+            if slug and any(map(self._reader.is_object_data, self._reader.manual.symbols_of_page(slug)))
+            else ""
         )
 
     def _in_chapter(self, plain: str) -> str:
@@ -146,7 +148,7 @@ class TopicPages:
         if chapter == around or not is_chapter_of(around, chapter):
             return ""
         is_class = key(plain) in {key(entry.name) for entry in self._titles.classes_called(plain)}
-        return chapter if not is_class and self._reader.page_children(chapter) else ""
+        return chapter if not is_class and self._reader.manual.page_children(chapter) else ""
 
     def _in_other_words(self, plain: str) -> str:
         """The page of what the documentation calls otherwise, in an everyday word, or in two that stand for the same:
@@ -171,7 +173,7 @@ class TopicPages:
 
     def _is_name(self, word: str) -> bool:
         """Whether something of Blender's is called so."""
-        return bool(self._reader.by_name(word) or self._reader.by_key(key(word)))
+        return bool(self._reader.names.by_name(word) or self._reader.names.by_key(key(word)))
 
     def _with_socket(self, plain: str) -> str:
         """The page of a zone that is asked for with the name of one of its sockets: the iterations of a repeat zone."""
@@ -179,7 +181,9 @@ class TopicPages:
         slug = self._titles.called(zone) if zone.lower().endswith(_OF_NODES[1]) else ""
         if not slug:
             return ""
-        names = (name for node in self._reader.symbols_of_page(slug) for name in self._reader.members(node))
+        names = (
+            name for node in self._reader.manual.symbols_of_page(slug) for name in self._reader.members(node)
+        )
         return slug if any(f'["{socket.lower()}"]' in name.lower() for name in names) else ""
 
     def _with_more_words(self, plain: str) -> str:
@@ -188,7 +192,7 @@ class TopicPages:
         if kind.lower() not in _OF_NODES or not name:
             return ""
         if kind.lower() == _OF_NODES[1]:
-            titled = {slug for _, slug in self._reader.by_key(topic_key(name))}
+            titled = {slug for _, slug in self._reader.names.by_key(topic_key(name))}
             # Its name alone may be a chapter's as well.
             if len(of_nodes := [slug for slug in titled if self._titles.is_of_node(slug)]) == 1:
                 return of_nodes[0]
@@ -199,7 +203,7 @@ class TopicPages:
     @cached_property
     def _titles_of_nodes(self) -> list[tuple[str, frozenset[str]]]:
         """The pages of nodes and zones that may be topics, each with the words of its title."""
-        pages = filter(None, map(self._reader.page_entry, self._reader.slugs))
+        pages = filter(None, map(self._reader.manual.page_entry, self._reader.manual.slugs))
         return [
             (page.slug, frozenset(terms(page.title)))
             for page in pages

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from kb_serve.answer.steps.names.topic_names import TopicNames
-    from kb_serve.reader import BaseReader, PageEntry, SymbolEntry
+    from kb_serve.lookups.records import PageEntry, SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _EDITOR = f"{TYPES}Space"
 _MOST_SETTINGS = 10
@@ -70,13 +71,13 @@ class Topics:
 
     def overview(self, slug: str) -> TopicOverview:
         """How it is done, then the classes and operators that belong to the topic by weight, and the pages below."""
-        page = self._reader.page_entry(slug)
+        page = self._reader.manual.page_entry(slug)
         assert page is not None
         names = self._members.names(slug, page.title)
         telling = self._introduction(page) or page
         head = "\n\n".join(filter(None, (f"## {page.title}", said_of(telling, self._reader), telling.url)))
         classes, operators = self._entries(names.classes), self._entries(names.operators)
-        is_single = not self._reader.page_children(slug)
+        is_single = not self._reader.manual.page_children(slug)
         settings = self._settings.labelled(slug) if is_single else []
         steps = [*self._how(page, names, settings)]
         blocks = [AnswerBlock(head, "summary"), *self._set_up(slug), *steps]
@@ -117,7 +118,7 @@ class Topics:
 
     def _set_up(self, slug: str) -> Iterator[AnswerBlock]:
         """What a page says must be there before: an image node that is baked to."""
-        page = self._reader.page(slug)
+        page = self._reader.manual.page(slug)
         for section in page.sections if page else ():
             if section.title == _SET_UP and (said := passage_text(section.text, -1)):
                 yield AnswerBlock(f"**{_SET_UP}** (from the manual)\n{said}", "setup")
@@ -126,7 +127,7 @@ class Topics:
         """The heaviest settings that the pages of a chapter name beside their labels."""
         pages = subtree(slug, self._reader)
         labelled = dict.fromkeys(entry for page in pages for entry in self._settings.labelled(page))
-        return self._reader.heaviest(labelled)[:_MOST_SETTINGS] if len(pages) > 1 else []
+        return self._reader.usage.heaviest(labelled)[:_MOST_SETTINGS] if len(pages) > 1 else []
 
     def first_steps(self, text: str, most: int) -> list[str]:
         """The first steps of a topic; more where what its page explains is made in a later one, as a node is in a tree;
@@ -145,20 +146,20 @@ class Topics:
         return Steps(self._reader, names).told() if names else []
 
     def _names(self, slug: str) -> TopicNames | None:
-        page = self._reader.page_entry(slug)
+        page = self._reader.manual.page_entry(slug)
         return self._members.names(slug, page.title) if page else None
 
     def members(self, slug: str) -> frozenset[str]:
         """All classes and operators that belong to a topic."""
-        page = self._reader.page_entry(slug)
+        page = self._reader.manual.page_entry(slug)
         assert page is not None
         names = self._members.names(slug, page.title)
         return frozenset({*names.classes, *names.operators})
 
     def _introduction(self, page: PageEntry) -> PageEntry | None:
         """The page that says what a page is about which only lists others, if one does."""
-        below = self._reader.page_children(page.slug)
-        record = self._reader.page(page.slug)
+        below = self._reader.manual.page_children(page.slug)
+        record = self._reader.manual.page(page.slug)
         is_hollow = record is None or not any(section.text for section in record.sections)
         is_told = is_hollow and below and below[0].title == "Introduction" and own_summary(below[0])
         return below[0] if is_told else None
@@ -168,17 +169,19 @@ class Topics:
 
     def _sent_to(self, slug: str) -> Iterator[str]:
         """The pages of other chapters that a chapter's first page names and links to, as that on what replaces it."""
-        page = self._reader.page(slug)
+        page = self._reader.manual.page(slug)
         if page is None or not page.children or len(page.sections) > 1:
             return
         text = " ".join(section.text for section in page.sections)
         for link in page.links:
-            other = None if link.startswith(slug.removesuffix("index")) else self._reader.page_entry(link)
+            other = (
+                None if link.startswith(slug.removesuffix("index")) else self._reader.manual.page_entry(link)
+            )
             if other is not None and other.title in text:
                 yield self._page_line(other)
 
     def _page_lines(self, slug: str, depth: int = 2) -> Iterator[str]:
-        for child in self._reader.page_children(slug):
+        for child in self._reader.manual.page_children(slug):
             yield self._page_line(child)
             if depth > 1:
                 yield from (f"  {line}" for line in self._page_lines(child.slug, depth - 1))

@@ -17,7 +17,8 @@ from kb_serve.answer.steps.setting.choices import choice_of
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _CODE = re.compile(r"`([^`]+)`")
 _KINDS = ("property", "socket")
@@ -35,8 +36,10 @@ class TopicSettings:
 
     def labelled(self, slug: str) -> list[SymbolEntry]:
         """The properties and sockets that are named beside a page's labels, in its order, each once."""
-        nodes = [path for path in self._reader.symbols_of_page(slug) if path.startswith(TYPES)]
-        names = [name for text in self._reader.label_names(slug).values() for name in _CODE.findall(text)]
+        nodes = [path for path in self._reader.manual.symbols_of_page(slug) if path.startswith(TYPES)]
+        names = [
+            name for text in self._reader.manual.label_names(slug).values() for name in _CODE.findall(text)
+        ]
         # A socket stands there without its node, where the page is about one.
         paths = [
             f"{owner}{name}"
@@ -65,8 +68,8 @@ class TopicSettings:
         """The calls, then the assignments with the value that a page's title names, heaviest first, of what the part of
         the manual explains that the page is in: ``light.type = 'SUN'``.
         """
-        owners = {owner: value for owner, value, _ in self._reader.enum_owners(key(text))}
-        weights = self._reader.weights([plain_path(owner) for owner in owners])
+        owners = {owner: value for owner, value, _ in self._reader.names.enum_owners(key(text))}
+        weights = self._reader.usage.weights([plain_path(owner) for owner in owners])
         heavy = {owner: weights.get(plain_path(owner), 0.0) for owner in owners}
         near = {_name(owner) for owner in owners if self._is_near(owner, slug)}
         owners = {owner: value for owner, value in owners.items() if _name(owner) in near}
@@ -81,7 +84,9 @@ class TopicSettings:
     def _is_near(self, owner: str, slug: str) -> bool:
         """Whether the part of the manual that a page is in explains what has a value."""
         path = plain_path(owner)
-        links = self._reader.manual_links(path) or self._reader.manual_links(path.rpartition(".")[0])
+        links = self._reader.manual.manual_links(path) or self._reader.manual.manual_links(
+            path.rpartition(".")[0]
+        )
         return slug.partition("/")[0] in {link.partition("/")[0] for link in links}
 
     def _written(self, owner: str, value: str) -> str:

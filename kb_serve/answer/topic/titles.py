@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_serve.answer.topic.page_settings import TopicSettings
-    from kb_serve.reader import BaseReader, PageEntry, SymbolEntry
+    from kb_serve.lookups.records import PageEntry, SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _ASIDE_PAGES = ("contribute/", "addons/", "interface/controls/")
 PAGES_OF_NODES = "interface/controls/nodes/types/"
@@ -48,13 +49,15 @@ class TopicTitles:
         if plain != plain.lower() and self._is_class(plain):
             return ""
         *titles, own = keys_of(plain)
-        self._reader.by_key.load((*titles, own))
-        titled = [{slug for _, slug in self._reader.by_key(title)} for title in titles]
-        titled[0] |= {slug for _, slug in self._reader.by_key(own) if self._reader.page_children(slug)}
+        self._reader.names.by_key.load((*titles, own))
+        titled = [{slug for _, slug in self._reader.names.by_key(title)} for title in titles]
+        titled[0] |= {
+            slug for _, slug in self._reader.names.by_key(own) if self._reader.manual.page_children(slug)
+        }
         if not chapter and len(titled[0]) == 1 and (doing := self._doing(plain, *titled[0])):
             return doing
         if titled[0] and all(slug.startswith(_BONES) for slug in titled[0]):
-            of_objects = {slug for _, slug in self._reader.by_key(topic_key(f"{plain} {OF_OBJECTS}"))}
+            of_objects = {slug for _, slug in self._reader.names.by_key(topic_key(f"{plain} {OF_OBJECTS}"))}
             titled[0] = of_objects or titled[0]
         titled = [
             self._without_nodes({slug for slug in slugs if slug.startswith(chapter)}, plain)
@@ -69,34 +72,34 @@ class TopicTitles:
 
     def classes_called(self, text: str) -> Iterator[SymbolEntry]:
         """The classes that are called so, by their names or labels."""
-        entries = (self._reader.entry(identifier) for _, identifier in self._reader.by_key(key(text)))
+        entries = (self._reader.entry(identifier) for _, identifier in self._reader.names.by_key(key(text)))
         return (entry for entry in entries if entry is not None and entry.kind == "class")
 
     def is_topic(self, slug: str) -> bool:
         """Whether a page may be a topic, and has pages below it or explains symbols."""
         return self._may_be_topic(slug) and bool(
-            self._reader.page_children(slug) or self._reader.symbols_of_page(slug)
+            self._reader.manual.page_children(slug) or self._reader.manual.symbols_of_page(slug)
         )
 
     def is_of_node(self, slug: str) -> bool:
         """Whether a page explains a node."""
-        return any(self._reader.descends(path, NODE) for path in self._reader.symbols_of_page(slug))
+        return any(self._reader.descends(path, NODE) for path in self._reader.manual.symbols_of_page(slug))
 
     def _doing(self, plain: str, titled: str) -> str:
         """The page that explains the operator which does what a word says, the heaviest of several, if its address ends
         so and the only page with that title explains another: Render Baking by baking. Empty for none.
         """
-        if self._reader.page_children(titled):
+        if self._reader.manual.page_children(titled):
             return ""
         wanted = terms(plain)
-        own = self._reader.symbols_of_page(titled)
+        own = self._reader.manual.symbols_of_page(titled)
         if any(terms(path.rpartition(".")[2]) == wanted for path in own):
             return ""
-        operators = [one for one in self._reader.by_name("_".join(wanted)) if one.kind == "operator"]
-        weights = self._reader.weights([one.path for one in operators])
+        operators = [one for one in self._reader.names.by_name("_".join(wanted)) if one.kind == "operator"]
+        weights = self._reader.usage.weights([one.path for one in operators])
         doing: dict[str, float] = {}
         for path, weight in weights.items():
-            slug = next(iter(self._reader.manual_links(path)), "").partition("#")[0]
+            slug = next(iter(self._reader.manual.manual_links(path)), "").partition("#")[0]
             if terms(slug.rpartition("/")[2]) == wanted:
                 doing[slug] = max(weight, doing.get(slug, 0.0))
         first, *others = sorted(doing, key=lambda slug: -doing[slug]) or [""]
@@ -106,14 +109,16 @@ class TopicTitles:
         """Pages without the chapters of nodes, where another chapter has the very title: who asks for hair
         says no nodes.
         """
-        titles = {slug: page.title for slug in slugs if (page := self._reader.page_entry(slug))}
+        titles = {slug: page.title for slug in slugs if (page := self._reader.manual.page_entry(slug))}
         exact = {slug for slug, title in titles.items() if topic_key(title) == topic_key(plain)}
         of_nodes = {slug for slug, title in titles.items() if title.endswith(_CHAPTER_OF_NODES)}
-        return slugs - (of_nodes - exact) if any(map(self._reader.page_children, exact)) else slugs
+        return slugs - (of_nodes - exact) if any(map(self._reader.manual.page_children, exact)) else slugs
 
     def _exactly(self, plain: str) -> str:
         """The page of a topic whose title is just these many words; empty for none."""
-        slugs = {slug for _, slug in self._reader.by_key(topic_key(plain)) if self._is_title(slug, plain)}
+        slugs = {
+            slug for _, slug in self._reader.names.by_key(topic_key(plain)) if self._is_title(slug, plain)
+        }
         return next((slug for slug in slugs if self.is_topic(slug)), "") if len(slugs) == 1 else ""
 
     def _best(self, sizes: dict[str, int], slugs: set[str], plain: str) -> str:
@@ -125,7 +130,7 @@ class TopicTitles:
             return exact[0]
         best = max(sizes, key=lambda slug: (slug not in seldom, sizes[slug], slug))
         apart = [slug for slug in slugs if not any(map(partial(is_chapter_of, slug), slugs - {slug}))]
-        is_one_of_many = len(apart) > _CALLED_SO and not self._reader.page_children(best)
+        is_one_of_many = len(apart) > _CALLED_SO and not self._reader.manual.page_children(best)
         return "" if is_one_of_many or (best in seldom and len(seldom) < len(slugs)) else best
 
     @staticmethod
@@ -136,7 +141,7 @@ class TopicTitles:
 
     def _is_title(self, slug: str, text: str) -> bool:
         """Whether several words are a page's title, small words included: Track To is none of Tracking Constraints."""
-        page = self._reader.page_entry(slug)
+        page = self._reader.manual.page_entry(slug)
         return page is not None and key(page.title) == key(text) and len(text.split()) > 1
 
     def _is_class(self, text: str) -> bool:
@@ -144,13 +149,13 @@ class TopicTitles:
         return any(self.classes_called(text))
 
     def _sets_something(self, slug: str) -> bool:
-        page = self._reader.page_entry(slug)
+        page = self._reader.manual.page_entry(slug)
         if page is None or not self._may_be_topic(slug):
             return False
         return bool(self._settings.labelled(slug) or [*self._settings.as_value(plain_title(page), slug)])
 
     def _may_be_topic(self, slug: str) -> bool:
-        page = self._reader.page_entry(slug)
+        page = self._reader.manual.page_entry(slug)
         if page is None or page.source != "manual":
             return False
         # Nodes that several kinds of trees take are explained aside.
@@ -160,7 +165,7 @@ class TopicTitles:
     def _size(self, slug: str) -> int:
         """The number of pages and symbols below a page: people rarely mean the smaller chapter."""
         below = subtree(slug, self._reader)
-        return len(below) + sum(len(self._reader.symbols_of_page(child)) for child in below)
+        return len(below) + sum(len(self._reader.manual.symbols_of_page(child)) for child in below)
 
 
 def keys_of(plain: str) -> list[str]:
@@ -175,7 +180,7 @@ def keys_of(plain: str) -> list[str]:
 def subtree(slug: str, reader: BaseReader, depth: int = 3) -> dict[str, int]:
     """A page and those below it, each with its depth."""
     slugs = {slug: 0}
-    for child in reader.page_children(slug) if depth else ():
+    for child in reader.manual.page_children(slug) if depth else ():
         for below, far in subtree(child.slug, reader, depth - 1).items():
             slugs.setdefault(below, far + 1)
     return slugs

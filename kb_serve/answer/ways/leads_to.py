@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.symbols.records import Symbol
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _OF_DATA_BLOCK = 4  # settings of what has a page of its own in any search
 _OTHERS = 6  # collections, pointers and functions
@@ -30,9 +31,9 @@ def leads_to(pointer: Symbol, reader: BaseReader) -> Iterator[AnswerBlock]:
     most = _OF_DATA_BLOCK if reader.descends(cls, ID) else MOST_SETTINGS
     settings = settings_of(cls, reader, most)
     bases = [base.path for base in reader.lineage(cls) if base.path not in _OF_ALL]
-    members = reader.heaviest(entry for base in bases for entry in reader.members(base).values())
+    members = reader.usage.heaviest(entry for base in bases for entry in reader.members(base).values())
     others = [entry for entry in members if _is_other(entry) and f"`{entry.name}`" not in settings]
-    named = reader.heaviest(others, _LEAST)[:_OTHERS]
+    named = reader.usage.heaviest(others, _LEAST)[:_OTHERS]
     names = ", ".join(f"`.{one.name}()`" if one.kind == "function" else f"`.{one.name}`" for one in named)
     told = [names, settings] if named and members[0] == named[0] else [settings, names]
     if text := "; ".join(filter(None, told)):

@@ -26,7 +26,7 @@ def made_with(
         return
     for argument, each in values.items():
         for value in sorted(each):
-            if cls := reader.class_made(function.path, TYPES + result, value.strip("'")):
+            if cls := reader.makers.class_made(function.path, TYPES + result, value.strip("'")):
                 yield _block(f"{argument}={value}", cls, reader)
 
 
@@ -36,7 +36,7 @@ def _block(given: str, cls: str, reader: BaseReader) -> AnswerBlock:
         for entry in reader.members(cls).values()
         if entry.kind == "property" and (entry.target or not entry.is_read_only)
     ]
-    weights = reader.weights([entry.path for entry in settings])
+    weights = reader.usage.weights([entry.path for entry in settings])
     settings.sort(key=lambda entry: -weights.get(entry.path, 0.0))
     lines = [f"- {clip(entry.line, _LINE_TOKENS)}" for entry in settings[:_SETTINGS]]
     if len(settings) > _SETTINGS:

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.symbols.records import Symbol
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _OPTIONAL = re.compile(r"(, )?\*, .*\)")
 _ADDING = ("new", "add", "link")  # the functions of collections that do so, the likeliest first
@@ -46,7 +47,7 @@ def place_lines(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
         if origin := symbol.editors:
             yield f"provided by: {', '.join(origin)}"
         yield from (text for flag, text in _NONE_IN_CONTEXT.items() if flag in symbol.flags)
-    if symbol.kind == "class" and (creation := reader.creations([symbol.path]).get(symbol.path)):
+    if symbol.kind == "class" and (creation := reader.makers.creations([symbol.path]).get(symbol.path)):
         calls = [*calls_before(reader, symbol.path, creation.call), creation.call]
         yield "made by " + ", then ".join(f"`{call}`" for call in calls)
     yield from told_makers(symbol, reader)
@@ -61,10 +62,10 @@ def place_lines(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
         taken = ", ".join(f"`{other.name}`" for other in alike if other and other.trees)
         it = "it" if node.path == symbol.path else f"a `{node.name}`"
         yield f"no node tree takes {it}: `nodes.new` refuses it" + (f"; it takes {taken}" if taken else "")
-    version, lacked = reader.arrival(symbol.path)
+    version, lacked = reader.history.arrival(symbol.path)
     if version:
         yield f"since Blender {version}" + (f" or a little before ({lacked} lacks it)" if lacked else "")
-    if page := reader.manual_url(symbol.path):
+    if page := reader.manual.manual_url(symbol.path):
         yield f"manual: {page}"
 
 
@@ -163,5 +164,5 @@ def _assigned(symbol: Symbol, reader: BaseReader) -> str:
     if not is_tree or empty_when_new(symbol) is None:
         return ""
     target = TYPES + symbol.target
-    creation = reader.creations([target]).get(target)
+    creation = reader.makers.creations([target]).get(target)
     return creation.call if creation else ""

@@ -69,7 +69,9 @@ class AskedSockets:
         spans = [span for span in combinations(range(len(asked) + 1), 2) if span[1] - span[0] <= _LONGEST]
         for side, (start, end) in product([*filter(None, sides)] or SIDES, spans):
             name = key(f"{side}[{''.join(asked[start:end])}]")
-            yield from (path for path in self._reader.removed_by_key(name) if path.startswith(f"{node}."))
+            yield from (
+                path for path in self._reader.history.removed_by_key(name) if path.startswith(f"{node}.")
+            )
 
 
 def _is_of_list(node: NamedNode, said: Sequence[str]) -> bool:

@@ -11,7 +11,8 @@ from kb_serve.rank.asked_words import NODE_WORDS
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _NO_LABEL = frozenset({"node", "nodes"})
 _JOINS = _NO_LABEL | {"and"}
@@ -48,7 +49,7 @@ def words_said(question: str) -> list[str]:
 def nodes_by_label(said: Sequence[str], reader: BaseReader) -> list[NamedNode]:
     """The nodes whose labels stand among words, in their order."""
     spans = [*_spans(said)]
-    reader.by_key.load("".join(said[start:end]) for start, end in spans)
+    reader.names.by_key.load("".join(said[start:end]) for start, end in spans)
     nodes: list[NamedNode] = []
     for start, end in spans:
         is_free = not nodes or start >= nodes[-1].end
@@ -74,7 +75,7 @@ def _spans(said: Sequence[str]) -> Iterator[tuple[int, int]]:
 
 def _called(label: str, reader: BaseReader) -> str:
     """The node with a label, in small letters and without spaces; empty for none."""
-    paths = [path for _, path in reader.by_key(label)]
+    paths = [path for _, path in reader.names.by_key(label)]
     reader.entry.load(paths)
     found = map(reader.entry, paths)
     nodes = [
@@ -82,7 +83,7 @@ def _called(label: str, reader: BaseReader) -> str:
     ]
     if not nodes:
         return ""
-    weights = reader.weights([node.path for node in nodes])
+    weights = reader.usage.weights([node.path for node in nodes])
     return max(nodes, key=lambda n: (not n.path.startswith(_OF_TEXTURES), weights.get(n.path, 0.0))).path
 
 

@@ -19,7 +19,8 @@ from kb_serve.recognise.resolving.variables import OTHERWISE, USUAL, is_guess, u
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed.old_code import OldCode
     from kb_serve.recognise.resolving.chains import Chain
@@ -148,7 +149,7 @@ class BrokenExpressions:
         """
         match chain.steps:
             case (ChainStep("attr", name), ChainStep("attr", missing), *_) if missing == resolved.missing:
-                named = self._reader.by_name(name)
+                named = self._reader.names.by_name(name)
             case _:
                 return False
         led_to = {f"{TYPES}{entry.target}" for entry in named if entry.group != "ui"}

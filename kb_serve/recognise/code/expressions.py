@@ -45,7 +45,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from kb_build.symbols.records import Symbol
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.names.by_words.operator_words import OperatorWords
     from kb_serve.recognise.names.likely.corrections import Corrector
     from kb_serve.recognise.recognition import Recognition
@@ -312,7 +313,9 @@ class Expressions:
         recognition.readings[chain.key] = readings[0].symbols[-1] if is_sure else ""
         bare = not chain.attributes and not readings[0].keyed  # a class with a call or an index behind it
         # ``active_object``: rather what is called so than what it holds
-        is_name = bare and not chain.steps and "_" in chain.root and bool(self._reader.by_name(chain.root))
+        is_name = (
+            bare and not chain.steps and "_" in chain.root and bool(self._reader.names.by_name(chain.root))
+        )
         likely = [
             resolved
             for resolved in readings[:4]

@@ -13,7 +13,8 @@ from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.recognition import MissingName
 
 if TYPE_CHECKING:
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.names.likely.corrections import Corrector
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.resolving.chains import Chain
@@ -41,7 +42,7 @@ class LooseNames:
         name = chain.attributes[-1] if chain.attributes else chain.root
         called = [
             identifier
-            for form, identifier in self._reader.by_key(key(name))
+            for form, identifier in self._reader.names.by_key(key(name))
             if form in {FORM_NAME, FORM_SHORT}
         ]
         self._reader.entry.load(called)
@@ -55,7 +56,7 @@ class LooseNames:
         lone = lone and not name.isupper() and not is_variable
         if not rows and lone and (correction := self._corrector.member(name)):
             recognition.corrections.append(correction)
-            rows = [entry for entry in self._reader.by_name(correction.meant) if entry.group != "ui"]
+            rows = [entry for entry in self._reader.names.by_name(correction.meant) if entry.group != "ui"]
         if not (rows or prose or chain.steps or is_variable):
             self._parts(chain, recognition)
         if chain.attributes and len(rows) > _FEW:
@@ -73,9 +74,11 @@ class LooseNames:
     def _parts(self, chain: Chain, recognition: Recognition) -> None:
         """Adds the names that one which never was is made of, each as the likeliest class has it."""
         name = chain.root
-        entries = [entry for part in self._corrector.parts(name) for entry in self._reader.by_name(part)]
+        entries = [
+            entry for part in self._corrector.parts(name) for entry in self._reader.names.by_name(part)
+        ]
         entries = [entry for entry in entries if entry.group != "ui" and entry.kind in _CALLED_OR_SET]
-        weights = self._reader.weights([entry.path for entry in entries])
+        weights = self._reader.usage.weights([entry.path for entry in entries])
         best: dict[str, str] = {}
         about = set(terms(name))
         # ``select_all_objects`` is hardly the one of bones.
@@ -84,15 +87,15 @@ class LooseNames:
             best.setdefault(entry.name, entry.path)
         for rank, path in enumerate(list(best.values())[:_FEW]):
             recognition.add(path, 0.84 - 0.01 * rank, SIMILAR)
-        is_name = "_" in name and not chain.assigned and not self._reader.by_key(key(name))
-        if best or (is_name and not self._reader.is_written(name)):
+        is_name = "_" in name and not chain.assigned and not self._reader.names.by_key(key(name))
+        if best or (is_name and not self._reader.names.is_written(name)):
             recognition.missing.append(MissingName(name))
 
     def _likeliest_owners(self, rows: list[SymbolEntry], prose: set[str]) -> list[SymbolEntry]:
         """Symbols of one name, those first whose owners the words around it name, which are usual, which count most,
         and to which the shortest path leads: strips of a scene before those within another strip.
         """
-        weights = self._reader.weights([entry.path for entry in rows])
+        weights = self._reader.usage.weights([entry.path for entry in rows])
         owners = {entry.path: self._reader.entry(entry.owner) for entry in rows}
 
         def place(entry: SymbolEntry) -> tuple[int, bool, float, int]:

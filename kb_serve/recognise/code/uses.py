@@ -96,7 +96,9 @@ class Uses:
         is_unknown = is_guess(chain.root) and len(guesses) > 1
         if guesses and guesses[0].kind in {"property", "socket"} and not any(lost):
             name = guesses[0].path[len(guesses[0].owner) :]
-            owners = [path for value in chain.values for path, *_ in self._reader.enum_owners(key(value))]
+            owners = [
+                path for value in chain.values for path, *_ in self._reader.names.enum_owners(key(value))
+            ]
             if any(path.endswith(name) for path in owners):
                 return
             if is_other_enum(guesses[0], query):
@@ -113,7 +115,7 @@ class Uses:
         if usual_classes(chain.root) or not taking:
             return False
         entries = filter(None, map(self._reader.entry, dict.fromkeys(taking)))
-        for place, operator in enumerate(self._reader.heaviest(entries)[:_FEW]):
+        for place, operator in enumerate(self._reader.usage.heaviest(entries)[:_FEW]):
             recognition.add(operator.path, _OF_AN_OPERATOR - 0.01 * place, "enum item")
         recognition.notes.append(_OF_OPERATOR.format(chain.root))
         return True

@@ -10,7 +10,8 @@ from kb_build.symbols.flags import empty_when_new, fillers
 from kb_build.symbols.records import WITHOUT_ACTIVE
 
 if TYPE_CHECKING:
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 ANY = frozenset(
     {STRUCT, ID, f"{TYPES}PropertyGroup", f"{TYPES}AnyType"}
@@ -30,14 +31,16 @@ class Absent:
         """The member of that name which scripts use most, of those of things that may be absent; None if none is."""
         entries = [
             entry
-            for entry in self._reader.by_name(name)
+            for entry in self._reader.names.by_name(name)
             if entry.kind in {"property", "function"}
             and entry.owner.startswith(TYPES)
             and entry.group != "ui"
         ]
-        weights = self._reader.weights([entry.path for entry in entries])
+        weights = self._reader.usage.weights([entry.path for entry in entries])
         least = max(weights.values(), default=0.0) / 2
-        usual = (entry for entry in self._reader.heaviest(entries) if weights.get(entry.path, 0.0) >= least)
+        usual = (
+            entry for entry in self._reader.usage.heaviest(entries) if weights.get(entry.path, 0.0) >= least
+        )
         return next((entry for entry in usual if self.sources(entry.owner)), None)
 
     def in_context(self, cls: str) -> list[str]:
@@ -54,7 +57,7 @@ class Absent:
             return ""
         kinds = [entry.name for entry in self._reader.lineage(cls) if entry.path not in ANY]
         collections = [entry for kind in kinds for entry in self._reader.collections_with(kind)]
-        ranked = sorted(self._reader.heaviest(collections), key=lambda entry: entry.owner != BLEND_DATA)
+        ranked = sorted(self._reader.usage.heaviest(collections), key=lambda entry: entry.owner != BLEND_DATA)
         return ranked[0].path if ranked else ""
 
     def pointer_to(self, cls: str) -> str:
@@ -62,8 +65,8 @@ class Absent:
         if self._reader.is_object_data(cls):
             return _OBJECT_DATA
         pointers = [one for one in self._reader.pointing_at(cls.removeprefix(TYPES)) if one.owner != cls]
-        weights = self._reader.weights([entry.path for entry in pointers])
-        ranked = self._reader.heaviest(pointers)
+        weights = self._reader.usage.weights([entry.path for entry in pointers])
+        ranked = self._reader.usage.heaviest(pointers)
         weighty = (entry.path for entry in ranked if weights.get(entry.path, 0.0) >= WEIGHTY)
         return next((path for path in weighty if is_empty_when_new(path, self._reader)), "")
 
@@ -98,7 +101,7 @@ class Absent:
             for entry in self._reader.members(CONTEXT).values()
             if entry.kind == "context" and entry.type == "pointer"
         }
-        return self._reader.heaviest(
+        return self._reader.usage.heaviest(
             entry for entry, symbol in symbols.items() if symbol and WITHOUT_ACTIVE in symbol.flags
         )
 

@@ -36,10 +36,10 @@ class FormerSockets:
         paths = [
             path
             for side in SIDES
-            for path in self._reader.removed_by_key(key(f'{side}["{name}"]'))
+            for path in self._reader.history.removed_by_key(key(f'{side}["{name}"]'))
             if path.endswith(f'["{name}"]')  # keys tell small letters from capitals
         ]
-        taken = {path: new for path in paths if (new := self._reader.still_works(path))}
+        taken = {path: new for path in paths if (new := self._reader.history.still_works(path))}
         if len(taken) * 2 > len(paths):
             self._tell_still_taken(name, taken, recognition)
             return True
@@ -66,7 +66,7 @@ class FormerSockets:
         """
         nodes: dict[str, str] = {}
         for path in sorted(lost, key=lambda path: (self._reader.entry(socket_node(path)) is None, path)):
-            span = self._reader.removed(path)
+            span = self._reader.history.removed(path)
             if span is not None and span[2]:  # not of later versions alone
                 nodes.setdefault(socket_node(path), self._name_now(path))
         if nodes:
@@ -75,19 +75,19 @@ class FormerSockets:
             ]
             more = f", and {len(nodes) - _MOST_LISTED} more" if len(nodes) > _MOST_LISTED else ""
             yield f"Other versions had a socket `{name}` on {', '.join(named)}{more}."
-        sockets = [entry for entry in self._reader.by_name(name) if entry.kind == "socket"]
+        sockets = [entry for entry in self._reader.names.by_name(name) if entry.kind == "socket"]
         having = sorted({entry.owner.removeprefix(TYPES) for entry in sockets})
         if 0 < len(having) <= _FEW:
             yield f"Nodes that have one: {', '.join(f'`{node}`' for node in having)}."
 
     def _name_now(self, path: str) -> str:
         """What the node calls the socket now, or what takes the node's place, in brackets; empty for neither."""
-        target = next((successor.target for successor in self._reader.successors(path)), "")
+        target = next((successor.target for successor in self._reader.history.successors(path)), "")
         if target and socket_node(target) == socket_node(path):
             return f" (now `{socket_name(target)}`)"
         if self._reader.entry(node := socket_node(path)):
             return ""
-        others = (successor.target for successor in self._reader.successors(node))
+        others = (successor.target for successor in self._reader.history.successors(node))
         instead = next(filter(None, others), "") or socket_node(target)
         return f" (now `{instead.removeprefix(TYPES)}`)" if instead else ""
 
@@ -95,9 +95,9 @@ class FormerSockets:
         """A former name that most of the nodes which had it still take: where it fails."""
         new = Counter(map(socket_name, taken.values())).most_common(1)[0][0]
         taking = {socket_node(path) for path in taken}
-        sockets = [entry for entry in self._reader.by_name(new) if entry.kind == "socket"]
+        sockets = [entry for entry in self._reader.names.by_name(new) if entry.kind == "socket"]
         having = {entry.owner: entry.path for entry in sockets if entry.owner not in taking}
-        weights = self._reader.weights(list(having))
+        weights = self._reader.usage.weights(list(having))
         lacking = sorted(having, key=lambda node: (-weights.get(node, 0.0), node))
         listed = ", ".join(f"`{node}`" for node in lacking[:_MOST_LISTED])
         others = f", and {len(lacking) - _MOST_LISTED} more" if len(lacking) > _MOST_LISTED else ""
@@ -119,10 +119,12 @@ class FormerSockets:
         """
         if usual := [path for path in paths if path.startswith(_USUAL_NODE)]:
             return usual
-        having = sum(entry.kind == "socket" for entry in self._reader.by_name(name))
+        having = sum(entry.kind == "socket" for entry in self._reader.names.by_name(name))
         if having * _FEW > len(paths):
             return []
-        targets = [targets[0].target for path in paths if (targets := list(self._reader.successors(path)))]
+        targets = [
+            targets[0].target for path in paths if (targets := list(self._reader.history.successors(path)))
+        ]
         names = Counter(map(socket_name, targets))
         new, count = names.most_common(1)[0] if names else ("", 0)
         if len(paths) < _FEW or not new or count * 2 < len(paths):

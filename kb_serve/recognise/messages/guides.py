@@ -18,5 +18,5 @@ EXTENSIONS = "bpy.utils.extension_path_user"  # there since add-ons may be exten
 
 def add_guide(slug: str, reader: BaseReader, recognition: Recognition, sure: float = 0.86) -> None:
     """Adds a guide that the base has."""
-    if reader.is_page(slug):
+    if reader.manual.is_page(slug):
         recognition.add(slug, sure, "error message")

@@ -13,7 +13,8 @@ from kb_serve.recognise.messages.of_older import of_older
 from kb_serve.recognise.resolving.chain_starts import ROOTS
 
 if TYPE_CHECKING:
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 
@@ -107,10 +108,10 @@ class Imports:
             return entry
         if name.islower() and "_" not in name:
             return None
-        named = [entry for entry in self._reader.by_name(name) if entry.kind in _IMPORTABLE]
+        named = [entry for entry in self._reader.names.by_name(name) if entry.kind in _IMPORTABLE]
         owners = {entry: self._reader.entry(entry.owner) for entry in named}
         public = [entry for entry, owner in owners.items() if owner and owner.kind == "module"]
-        return next(iter(self._reader.heaviest(public)), None)
+        return next(iter(self._reader.usage.heaviest(public)), None)
 
     def tell_if_gone(self, path: str, recognition: Recognition) -> bool:
         """Adds a module, or a name in one, that only other versions have; returns whether it is one."""

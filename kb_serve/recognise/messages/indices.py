@@ -12,7 +12,8 @@ from kb_serve.recognise import message_patterns as forms
 
 if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
 
 _BMESH = "bmesh.types.BMesh"
@@ -70,7 +71,7 @@ class Indices:
                 )
         # Of ``vertices[0].groups[0]`` it is mostly the last that is empty.
         for name in reversed(subscripted):
-            entries = [entry for entry in self._reader.by_name(name) if entry.type == "collection"]
+            entries = [entry for entry in self._reader.names.by_name(name) if entry.type == "collection"]
             entries = [entry for entry in entries if entry.path in found] or entries
             if len({(entry.collection, entry.target) for entry in entries}) == 1:
                 if told := self._either(entries[0], index, query):
@@ -79,7 +80,7 @@ class Indices:
                 adding = next((functions[one].path for one in _ADD if one in functions), "")
                 if symbol := self._reader.symbol(adding):
                     return f"{note} {_added_by(name, symbol)}"
-                made = self._reader.creations([f"{TYPES}{entries[0].target}"]).values()
+                made = self._reader.makers.creations([f"{TYPES}{entries[0].target}"]).values()
                 return next((f"{note} `{creation.call}` adds one." for creation in made), note)
         return note
 
@@ -90,7 +91,9 @@ class Indices:
         names = re.findall(rf"\b([a-z]\w*)\[{re.escape(index)}\]", query)
         before = names[names.index(last.name) - 1] if last.name in names[1:] else ""
         holders = (
-            one for one in self._reader.by_name(before) if before and f"{TYPES}{one.target}" == last.owner
+            one
+            for one in self._reader.names.by_name(before)
+            if before and f"{TYPES}{one.target}" == last.owner
         )
         first = next(holders, None)
         held = self._reader.symbol(first.path) if first else None

@@ -40,7 +40,10 @@ class ItemCounts:
         wanted = (int(match["wanted"]),)
         names = {chain.steps[-1].text for chain in find_chains(query) if chain.steps}
         paths = [
-            entry.path for name in names for entry in self._reader.by_name(name) if entry.kind == "property"
+            entry.path
+            for name in names
+            for entry in self._reader.names.by_name(name)
+            if entry.kind == "property"
         ]
         wanting = [path for path in paths if (one := self._reader.symbol(path)) and one.array == wanted]
         named = [match.id for match in recognition.matches if match.id in wanting]

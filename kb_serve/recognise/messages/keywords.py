@@ -88,7 +88,7 @@ class Keywords:
         """The operator that code beside a message calls, where that is none of Blender's: one of the script's own."""
         called = _CALLED.findall(query) if _OF_OPERATORS in query else []
         own = [path for path in dict.fromkeys(called) if not self._reader.entry(path)]
-        is_known = any(self._reader.removed(path) for path in own)
+        is_known = any(self._reader.history.removed(path) for path in own)
         return own[0] if len(own) == len(set(called)) == 1 and not is_known else ""
 
     def _keyword(self, name: str, function: str, meant: str, recognition: Recognition) -> None:
@@ -140,7 +140,7 @@ class Keywords:
     def _heaviest_first(self, paths: Iterable[str]) -> list[str]:
         """Functions, those first that count most."""
         entries = filter(None, map(self._reader.entry, sorted(paths)))
-        return [entry.path for entry in self._reader.heaviest(entries)]
+        return [entry.path for entry in self._reader.usage.heaviest(entries)]
 
     def _is_of_rna(self, path: str) -> bool:
         """Whether a function is one of RNA's, whose messages name its class and word this otherwise."""
@@ -155,17 +155,17 @@ class Keywords:
 
     def _keyword_alone(self, name: str, recognition: Recognition) -> None:
         """An argument that some operator does not take: those that do, and what others have instead."""
-        taking = self._reader.operators_taking(name)
+        taking = self._reader.names.operators_taking(name)
         if taking and len(taking) <= _MOST_TAKING:
             listed = ", ".join(f"`{path}`" for path in taking)
             recognition.notes.append(f"`{name}` is an argument of {listed}.")
         recognition.notes.append(_NO_OPERATOR_NAMED)
         once = [
             path
-            for path in self._reader.removed_named(name)
+            for path in self._reader.history.removed_named(name)
             if path.startswith(OPERATORS) and path.endswith(f"({name})") and self._is_gone(path)
         ]
-        uses = self._reader.use_counts([plain_path(path) for path in once])
+        uses = self._reader.usage.use_counts([plain_path(path) for path in once])
         once.sort(key=lambda path: -uses.get(plain_path(path), 0))
         for removed in filter(None, map(self._removed.of_path, once[:_FEW])):
             recognition.add_removed(removed)
@@ -179,15 +179,15 @@ class Keywords:
             }
         )
         if not taking and not recognition.removed:
-            similar = (near for near, _ in nearest(name, self._reader.operator_arguments, _FEW))
+            similar = (near for near, _ in nearest(name, self._reader.names.operator_arguments, _FEW))
             words = [near for near in similar if near not in EMPTY_WORDS]
         for word in words:
-            others = self._reader.operators_taking(word) if word != name else []
+            others = self._reader.names.operators_taking(word) if word != name else []
             if not others:
                 continue
             more = ""
             if len(others) > _MOST_TAKING:
-                uses = self._reader.use_counts(others)
+                uses = self._reader.usage.use_counts(others)
                 others = sorted(others, key=lambda path: -uses.get(path, 0))[:_FEW]
                 more = " and others"
             for path in others[:_FEW]:
@@ -197,5 +197,5 @@ class Keywords:
 
     def _is_gone(self, path: str) -> bool:
         """Whether this version lacks what an earlier one had, not what only a later one has."""
-        removed = self._reader.removed(path)
+        removed = self._reader.history.removed(path)
         return removed is not None and bool(removed[2])

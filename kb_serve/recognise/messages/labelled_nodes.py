@@ -30,6 +30,6 @@ def _labelled(query: str, reader: BaseReader) -> Iterator[str]:
     for length in range(_MOST_WORDS, 1, -1):
         for start in range(len(words) - length + 1):
             label = " ".join(words[start : start + length])
-            for path in reader.labelled_classes.get(label, ()):
+            for path in reader.names.labelled_classes.get(label, ()):
                 if "Node" in last_name(path):
                     yield path

@@ -18,7 +18,8 @@ from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.recognition import MissingName
 
 if TYPE_CHECKING:
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.messages.named_symbols import NamedSymbols
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup

@@ -27,8 +27,8 @@ class MadeOtherwise:
     def _not_made(self, written: str, recognition: Recognition) -> None:
         """A class that is not made by calling it: what makes one."""
         name = written.rpartition(".")[2]
-        cls = next((entry.path for entry in self._reader.by_name(name) if entry.kind == "class"), "")
-        creation = self._reader.creations([cls]).get(cls)
+        cls = next((entry.path for entry in self._reader.names.by_name(name) if entry.kind == "class"), "")
+        creation = self._reader.makers.creations([cls]).get(cls)
         makers = [creation.maker] if creation else self._returning(cls)
         if makers:
             calls = [creation.call] if creation else [f"{maker}()" for maker in makers[:_FEW]]
@@ -50,5 +50,5 @@ class MadeOtherwise:
             None, (self._reader.symbol(row[0]) for row in self._reader.rows(sql, f"{package}.*", cls))
         )
         paths = [s.path for s in symbols if any(returned.type == cls for returned in s.returns)]
-        uses = self._reader.use_counts(paths)
+        uses = self._reader.usage.use_counts(paths)
         return sorted(paths, key=lambda path: -uses.get(path, 0))

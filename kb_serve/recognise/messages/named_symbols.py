@@ -8,7 +8,8 @@ from kb_build.index.analysis import key
 from kb_build.symbols.api_names import TYPES
 
 if TYPE_CHECKING:
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 
 class NamedSymbols:
@@ -26,7 +27,7 @@ class NamedSymbols:
         for candidate in (TYPES + name, name):
             if (entry := self._reader.entry(candidate)) and (or_module or entry.kind in kinds):
                 return candidate
-        spelled = [identifier for _, identifier in self._reader.by_key(key(name))]
+        spelled = [identifier for _, identifier in self._reader.names.by_key(key(name))]
         found = [entry for entry in map(self._reader.entry, spelled) if entry and entry.kind in kinds]
         last = name.rpartition(".")[2]
         first = min(found, key=lambda entry: (entry.name != last, kinds.index(entry.kind)), default=None)
@@ -42,12 +43,14 @@ class NamedSymbols:
         if "." in written:
             entry = self.member(*written.rpartition(".")[::2])
             return entry.path if entry else ""
-        entries = [entry for entry in self._reader.by_name(written) if entry.kind in {"function", "operator"}]
+        entries = [
+            entry for entry in self._reader.names.by_name(written) if entry.kind in {"function", "operator"}
+        ]
         return entries[0].path if len(entries) == 1 else ""
 
     def called_so(self, name: str) -> list[str]:
         """The paths of the functions of a name."""
-        entries = self._reader.by_name(name) if name.isidentifier() else ()
+        entries = self._reader.names.by_name(name) if name.isidentifier() else ()
         return [entry.path for entry in entries if entry.kind == "function"]
 
     def taking(self, function: str, argument: str) -> str:

@@ -74,7 +74,7 @@ class NamelessMessages:
         for part, message in _FIRST_PARTS:  # nearly always that decides
             if part in query and message.is_in(query) and self._is_told(message):
                 for rank, path in enumerate(message.paths):
-                    if "/" not in path or self._reader.is_page(path):
+                    if "/" not in path or self._reader.manual.is_page(path):
                         recognition.add(path, _SURE - 0.03 * rank, "error message")
                 recognition.notes.append(message.help)
         recognition.notes += [note for part, note in _ANYWHERE if part in query]

@@ -21,7 +21,8 @@ from kb_serve.recognise.resolving.variables import usual_classes
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.messages.absent import Absent
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
@@ -68,7 +69,7 @@ class NoneBefore:
             return
         owners = {
             entry.owner.removeprefix(TYPES)
-            for entry in self._reader.by_name(name)
+            for entry in self._reader.names.by_name(name)
             if entry.kind in {"property", "function"}
             and entry.owner.startswith(TYPES)
             and entry.group != "ui"
@@ -94,7 +95,7 @@ class NoneBefore:
             likely = likely or holders
         elif not few and len(owners) <= _MANY and not likely:
             likely = [entry for entry in holders if self._is_flagged(entry, FILLED_BY)]
-            told = set(self._reader.heaviest(likely)[:1])
+            told = set(self._reader.usage.heaviest(likely)[:1])
         if not likely:
             likely = self._empty_before(name)
             told = set(likely)
@@ -102,7 +103,7 @@ class NoneBefore:
             self._tell_usual(usual, owners, recognition)
             return
         self._tell(name, owners, holders, recognition)
-        for rank, entry in enumerate(self._reader.heaviest(likely)[:_FEW]):
+        for rank, entry in enumerate(self._reader.usage.heaviest(likely)[:_FEW]):
             is_read = (entry.name, name) in read  # in the code beside the message
             recognition.add(entry.path, _IS_READ if is_read else 0.86 - 0.01 * rank, "may be None")
             if not gone:
@@ -135,7 +136,7 @@ class NoneBefore:
                     continue
                 pointers = [
                     one
-                    for one in self._reader.by_name(first.text)
+                    for one in self._reader.names.by_name(first.text)
                     if one.type == "pointer"
                     and one.group != "ui"
                     and not self._is_flagged(one, NEVER_NONE)
@@ -143,7 +144,7 @@ class NoneBefore:
                 ]
                 owners = usual_classes(chain.root) if first is steps[0] else []
                 own = [one for one in pointers if one.owner in owners]
-                if found := self._reader.heaviest(own or pointers):
+                if found := self._reader.usage.heaviest(own or pointers):
                     return found[0]
         return None
 
@@ -206,7 +207,7 @@ class NoneBefore:
         recognition.add(_MAKES_MODIFIERS, _IS_READ, "may be None")
 
     def _are_used(self, holders: list[SymbolEntry]) -> bool:
-        weights = self._reader.weights([entry.path for entry in holders])
+        weights = self._reader.usage.weights([entry.path for entry in holders])
         return max(weights.values(), default=0.0) >= _OFTEN
 
     def _tell_absent(self, member: SymbolEntry, recognition: Recognition) -> None:
@@ -234,18 +235,18 @@ class NoneBefore:
         }
         if not 0 < len(having) <= _MANY:
             return []
-        weights = self._reader.weights([entry.path for entry in self._reader.by_name(name)])
+        weights = self._reader.usage.weights([entry.path for entry in self._reader.names.by_name(name)])
         least = max(weights.values(), default=0) / 2
         usual = {target for target, path in having.items() if weights.get(path, 0) >= least}
         empty = (entry for target in usual for entry in self._empty_pointers(target))
-        found = self._reader.heaviest(sorted(empty, key=lambda entry: entry.path))
-        weights = self._reader.weights([entry.path for entry in found])
+        found = self._reader.usage.heaviest(sorted(empty, key=lambda entry: entry.path))
+        weights = self._reader.usage.weights([entry.path for entry in found])
         least = max(WEIGHTY, max(weights.values(), default=0) / 2)
         return [entry for entry in found if weights.get(entry.path, 0) >= least]
 
     def _that_may_have(self, name: str) -> set[str]:
         """The classes that pointers lead to, of those with a member of that name and of the classes below them."""
-        owners = {entry.owner for entry in self._reader.by_name(name)}
+        owners = {entry.owner for entry in self._reader.names.by_name(name)}
         below = {cls.path for owner in owners for cls in self._reader.descendants(owner)}
         return {path.removeprefix(TYPES) for path in owners | below} & self._pointers.keys()
 
@@ -282,7 +283,7 @@ class NoneBefore:
         symbol = self._reader.symbol(entry.path)
         if symbol is None or READ_ONLY in symbol.flags or not empty_when_new(symbol):
             return ""
-        made = self._reader.creations([TYPES + entry.target]).get(TYPES + entry.target)
+        made = self._reader.makers.creations([TYPES + entry.target]).get(TYPES + entry.target)
         is_value = made is not None and not made.maker.startswith(OPERATORS)  # operators return no thing
         value = made.call if made and is_value else entry.target.lower()
         return f"{entry.owner.removeprefix(TYPES).lower()}.{entry.name} = {value}"
@@ -296,7 +297,7 @@ class NoneBefore:
             of = f", a `{TYPES}{next(iter(owners))}`,"
             # What is None on new things is likelier None than what hardly ever is.
             likeliest = sorted(
-                self._reader.heaviest(holders),
+                self._reader.usage.heaviest(holders),
                 key=lambda entry: not is_empty_when_new(entry.path, self._reader),
             )
             listed = ", ".join(f"`{entry.path}`" for entry in likeliest[:_FEW])
@@ -322,7 +323,9 @@ class NoneBefore:
             for (first, call), (_, last) in pairwise(pairwise(chain.steps)):
                 if call.kind == "call" and last.text == name:
                     found = [
-                        entry for entry in self._reader.by_name(first.text) if self._gives_none(entry.path)
+                        entry
+                        for entry in self._reader.names.by_name(first.text)
+                        if self._gives_none(entry.path)
                     ]
                     having = (entry for entry in found if self._reader.member_of(entry.owner, name))
                     if one := next(having, None) or next(iter(found), None):

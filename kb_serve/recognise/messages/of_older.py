@@ -16,8 +16,10 @@ def of_older(path: str, reader: BaseReader) -> str:
     """A sentence on a symbol that this Blender has and that of a message lacks: since when, and what older ones have in
     its place. Empty for what is as old as the history.
     """
-    version, lacked = reader.arrival(path)
-    before = [old for old in reader.replaced_by(path) if (span := reader.removed(old)) and span[2]]
+    version, lacked = reader.history.arrival(path)
+    before = [
+        old for old in reader.history.replaced_by(path) if (span := reader.history.removed(old)) and span[2]
+    ]
     if not version and not before:
         return ""
     since = f", since {version}{' or a little before' if lacked else ''}" if version else ""

@@ -65,7 +65,7 @@ class Operators:
                 recognition.notes.append(context_for(symbol, wanted, keywords_given(query, symbol.path)))
                 add_guide(ON_OPERATORS, self._reader, recognition)
                 recognition.add(OVERRIDE, 0.82, "error message")
-            elif not self._reader.removed(match["path"]):
+            elif not self._reader.history.removed(match["path"]):
                 recognition.add(OVERRIDE, 0.82, "error message")
                 recognition.notes.append(_OF_ADDON.format(operator=match["path"]))
         for match in forms.first_matches(forms.WRONG_TYPE, query):
@@ -105,7 +105,9 @@ class Operators:
         """
         if operator_needs(operator) or refused_nothing(operator):
             return ""
-        others = map(self._reader.symbol, self._reader.operators_of(operator.owner.removeprefix(OPERATORS)))
+        others = map(
+            self._reader.symbol, self._reader.names.operators_of(operator.owner.removeprefix(OPERATORS))
+        )
         given = {operator_given(other) for other in others if other} - {""}
         member = given.pop() if len(given) == 1 else ""
         return member if member and _SAID.get(member, member.replace("_", " ")) in message else ""

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from kb_build.symbols.records import Symbol
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _NUMBER = re.compile(r"\.\d{3}$")  # of a name that was taken already
 _NODES = re.compile(r"\bnodes\b")
@@ -34,7 +35,7 @@ def nodes_called(name: str, query: str, reader: BaseReader) -> list[SymbolEntry]
     """
     asked = _NUMBER.sub("", name)
     are_asked = _NODES.search(query) is not None
-    entries = map(reader.entry, dict.fromkeys(path for _, path in reader.by_key(key(asked))))
+    entries = map(reader.entry, dict.fromkeys(path for _, path in reader.names.by_key(key(asked))))
     found = [
         entry
         for entry in entries
@@ -45,7 +46,7 @@ def nodes_called(name: str, query: str, reader: BaseReader) -> list[SymbolEntry]
     ]
     found = [entry for entry in found if reader.descends(entry.path, NODE)]
     others = [entry for entry in found if not entry.path.startswith(_OF_TEXTURES)]
-    return reader.heaviest(others or found)
+    return reader.usage.heaviest(others or found)
 
 
 def _is_called(label: str, name: str) -> bool:
@@ -55,7 +56,7 @@ def _is_called(label: str, name: str) -> bool:
 
 def on_called(nodes: Sequence[SymbolEntry], reader: BaseReader) -> Iterator[str]:
     """What is said of a name that new nodes get: of the most important one."""
-    made = reader.creations([node.path for node in nodes[:1]])
+    made = reader.makers.creations([node.path for node in nodes[:1]])
     for node in nodes[:1]:
         if node.path in made:
             yield _CALLED.format(node=last_name(node.path), name=node.label, call=made[node.path].call)
@@ -65,7 +66,7 @@ def sockets_by_setting(name: str, reader: BaseReader) -> list[Symbol]:
     """The sockets called so that nodes have only with some setting. Another one, or one of several by that name, is
     there at any time.
     """
-    entries = [entry for entry in reader.by_name(name) if entry.kind == "socket"]
+    entries = [entry for entry in reader.names.by_name(name) if entry.kind == "socket"]
     symbols = filter(None, (reader.symbol(entry.path) for entry in entries))
     return [
         symbol

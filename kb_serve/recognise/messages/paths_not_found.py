@@ -27,7 +27,7 @@ class PathsNotFound:
         """Adds what is called nearly so of the data-blocks that scripts use most and that lack the name itself."""
         for match in forms.first_matches(forms.NO_PATH, query):
             name = match["name"]
-            kinds = self._reader.heaviest(self._reader.descendants(ID))[:_MOST_KINDS]
+            kinds = self._reader.usage.heaviest(self._reader.descendants(ID))[:_MOST_KINDS]
             found = (self._like(kind.path, name) for kind in kinds)
             paths = next(filter(None, found), [])
             for rank, path in enumerate(paths):
@@ -36,8 +36,8 @@ class PathsNotFound:
                 listed = ", ".join(f"`{path}`" for path in paths)
                 recognition.notes.append(f"What is animated has no `{name}`; closest: {listed}.")
         for match in forms.first_matches(forms.NOT_ANIMATED, query):
-            named = [one for one in self._reader.by_name(match["name"]) if one.kind == "property"]
-            still = [one for one in self._reader.heaviest(named) if not self._is_animated(one.path)]
+            named = [one for one in self._reader.names.by_name(match["name"]) if one.kind == "property"]
+            still = [one for one in self._reader.usage.heaviest(named) if not self._is_animated(one.path)]
             for property_ in still[:1]:
                 recognition.add(property_.path, 0.97, "error message")
                 other = ANIMATED_BY.get(property_.path)
@@ -48,7 +48,9 @@ class PathsNotFound:
         names = self._reader.member_names(cls)
         found = () if name in names else [one for one, _ in nearest(name, names)]
         members = filter(None, (self._reader.member_of(cls, one) for one in found))
-        return [member.path for member in self._reader.heaviest(members) if self._is_animated(member.path)]
+        return [
+            member.path for member in self._reader.usage.heaviest(members) if self._is_animated(member.path)
+        ]
 
     def _is_animated(self, path: str) -> bool:
         symbol = self._reader.symbol(path)

@@ -34,6 +34,6 @@ class RefusedCalls:
         paths = [path for part, whole, path in self._refusals if part in query and whole.search(query)]
         if recognition.removed or any(match.sure >= 0.95 for match in recognition.matches):
             return  # what the message names is known
-        weights = self._reader.weights(paths) if paths else {}
+        weights = self._reader.usage.weights(paths) if paths else {}
         for rank, path in enumerate(sorted(paths, key=lambda path: -weights.get(path, 0.0))[:_FEW]):
             recognition.add(path, 0.98 - 0.01 * rank, "error message")

@@ -61,8 +61,10 @@ class UnnamedOwners:
             recognition.add_removed(removed)
         else:
             recognition.add(COLLECTION, 0.6, "error message")
-        members = [entry for entry in self._reader.by_name(name) if entry.kind in {"property", "function"}]
-        having = self._reader.heaviest(entry for entry in members if entry.owner in self._collections)
+        members = [
+            entry for entry in self._reader.names.by_name(name) if entry.kind in {"property", "function"}
+        ]
+        having = self._reader.usage.heaviest(entry for entry in members if entry.owner in self._collections)
         for rank, entry in enumerate(having[:_FEW]):
             recognition.add(entry.path, _ON_OTHERS - 0.01 * rank, "same name")
         self._of_ones_own(name, recognition, sure=_ON_OTHERS - 0.005 if having else _OWN_ALONE)
@@ -74,7 +76,7 @@ class UnnamedOwners:
     def _done_elsewhere(self, name: str, query: str) -> Elsewhere | None:
         """What adds or removes elements of the one collection that code asks for that: ``key_blocks.new("A")``."""
         for called in re.findall(rf"\.(\w+)\.{re.escape(name)}\b", query)[:_FEW]:
-            entries = [entry for entry in self._reader.by_name(called) if entry.kind == "property"]
+            entries = [entry for entry in self._reader.names.by_name(called) if entry.kind == "property"]
             found = {other for entry in entries if (other := elsewhere(entry.path, name, self._reader))}
             has_it = any(
                 self._reader.member_of(entry.collection, name) for entry in entries if entry.collection
@@ -98,7 +100,7 @@ class UnnamedOwners:
         """Class of collections → the weightiest property that is one: ``LayerObjects`` → ``ViewLayer.objects``."""
         sql = "SELECT path, collection FROM symbols WHERE target != '' AND collection != '' ORDER BY path"
         rows = self._reader.rows(sql)
-        weights = self._reader.weights([path for path, _ in rows])
+        weights = self._reader.usage.weights([path for path, _ in rows])
         found: dict[str, str] = {}
         for path, cls in sorted(rows, key=lambda row: -weights.get(row[0], 0)):
             found.setdefault(TYPES + cls, path)

@@ -37,7 +37,7 @@ class UnregisteredOperators:
             meant = [entry.path for entry in others if is_misspelling(last, entry.name)]
             for operator in meant:
                 recognition.add(operator, _MISSPELT, "similar name")
-            if not meant and not self._reader.removed(path):
+            if not meant and not self._reader.history.removed(path):
                 # A module that Blender lacks is an add-on's; in its own, another operator may be meant.
                 known = self._reader.entry(module) is not None
                 self._unregistered(name, _PERHAPS_OF_ADD_ON if known else _OF_ADD_ON, recognition)

@@ -64,7 +64,7 @@ class Values:
         for match in forms.first_matches(forms.UNLISTED_ENUM, query):
             self._unlisted(match["name"], query, recognition)
         for match in forms.first_matches(forms.BAD_TEXT, query):
-            once = [path for path in self._reader.removed_named(match["name"]) if "):" in path]
+            once = [path for path in self._reader.history.removed_named(match["name"]) if "):" in path]
             if once and (removed := self._removed.of_path(once[0])):
                 recognition.add_removed(removed)
             elif similar := _closest(match["name"], re.findall(r"'([^']+)'", match["items"])):
@@ -90,7 +90,7 @@ class Values:
         """Adds what lost a value, or else takes it somewhere, the most important first, where a message does not list
         what is taken.
         """
-        lost = [path.removesuffix(f":{value}") for path in self._reader.removed_named(value)]
+        lost = [path.removesuffix(f":{value}") for path in self._reader.history.removed_named(value)]
         for owners in (self._refusing(lost, query), self._refusing(self._taking(value), query)):
             if removed := self._lost_value(owners[:1], value):
                 recognition.add_removed(removed)
@@ -117,7 +117,7 @@ class Values:
         found = [owner for owner in owners if owner.startswith(called)]
         if _OF_PROPERTIES in query:
             found = [owner for owner in found if "(" not in owner]
-        weights = self._reader.weights(list(map(plain_path, found)))
+        weights = self._reader.usage.weights(list(map(plain_path, found)))
         here = [owner for owner in found if self._reader.entry(plain_path(owner))]
         return sorted(here, key=lambda owner: -weights.get(plain_path(owner), 0.0))
 
@@ -140,7 +140,7 @@ class Values:
             yield self._enum_values.condition(owner, name)
             if self._enum_values.has(owner, name):
                 yield self._never_had(owner, name, items) or self._not_taken(owner, name)
-            same = [] if name.startswith(_MINUS) else self._reader.enum_owners(key(name))
+            same = [] if name.startswith(_MINUS) else self._reader.names.enum_owners(key(name))
             spelled = (item for path, item, _ in same if path == owner)
             yield next(
                 (_NO_ITEM.format(name=name, similar=f"`{item}`") for item in spelled if item != name), ""
@@ -166,7 +166,7 @@ class Values:
         """That nothing comes to have a value, as a property with the same items tells that Blender alone sets; empty
         where none does.
         """
-        for other, identifier, _ in self._reader.enum_owners(key(name)):
+        for other, identifier, _ in self._reader.names.enum_owners(key(name)):
             symbol = self._reader.symbol(other) if identifier == name and "(" not in other else None
             if symbol is None or READ_ONLY not in symbol.flags:
                 continue
@@ -203,7 +203,7 @@ class Values:
 
     def _taking(self, value: str) -> list[str]:
         """All that takes exactly a value."""
-        return [owner for owner, item, _ in self._reader.enum_owners(key(value)) if item == value]
+        return [owner for owner, item, _ in self._reader.names.enum_owners(key(value)) if item == value]
 
     def _lost_value(self, owners: Iterable[str], value: str) -> RemovedSymbol | None:
         """A value that the likeliest owners took in other versions; where several did, one of which the successor is
@@ -235,5 +235,5 @@ class Values:
     def _of_classes(self, owners: Iterable[str]) -> list[str]:
         """Those of some properties that classes set to be registered, the most important first."""
         found = [owner for owner in owners if owner.rpartition(".")[2].startswith("bl_")]
-        weights = self._reader.weights(found)
+        weights = self._reader.usage.weights(found)
         return sorted(found, key=lambda owner: -weights.get(owner, 0.0))

@@ -99,7 +99,9 @@ class LostNames:
         if best and (node in best.symbols or _is_made(chain, node)):
             return True
         sockets = [
-            entry for entry in self._reader.by_name(name) if entry.path.startswith(f"{entry.owner}.{side}[")
+            entry
+            for entry in self._reader.names.by_name(name)
+            if entry.path.startswith(f"{entry.owner}.{side}[")
         ]
         if sockets and not removed.gone:
             return True  # what another node got later is hardly meant
@@ -108,7 +110,7 @@ class LostNames:
             return True
         nodes = [symbol.owner for symbol in symbols if not refuses(symbol, chain)]
         lost = socket_node(removed.path)
-        weights = self._reader.weights([*nodes, lost])
+        weights = self._reader.usage.weights([*nodes, lost])
         most = max((weights.get(node, 0.0) for node in nodes), default=0.0)
         return bool(nodes) and not weights.get(lost, 0.0) > _FAR_LIKELIER * most
 
@@ -173,7 +175,7 @@ class LostNames:
         removed, lost, today = found
         if max(today, default=0.0) and self._lists(readings, chain):
             return None
-        owners = self._reader.weights([reading.symbols[0] for reading in readings if reading.complete])
+        owners = self._reader.usage.weights([reading.symbols[0] for reading in readings if reading.complete])
         most = max(owners.values(), default=0.0)
         return removed if removed.targets and lost and lost >= most else None
 
@@ -206,7 +208,7 @@ class LostNames:
             return None
         taken = [reading for reading in whole if not self._refuses(reading, chain)]
         paths = {path for reading in taken for path in reading.symbols[:2]}
-        weights = self._reader.weights({*paths, _owner_of(removed.path)})
+        weights = self._reader.usage.weights({*paths, _owner_of(removed.path)})
         today = [sum(weights.get(path, 0.0) for path in reading.symbols[:2]) for reading in taken]
         return removed, weights.get(_owner_of(removed.path), 0.0), today
 
@@ -230,7 +232,7 @@ class LostNames:
             for path in paths
             if path.startswith(_HELD_BY) and not path.startswith(_THEME) and self._reader.entry(owner(path))
         }
-        weights = self._reader.weights(set(owners.values()))
+        weights = self._reader.usage.weights(set(owners.values()))
         return max(owners, key=lambda path: weights.get(owners[path], 0.0), default="")
 
 

@@ -118,7 +118,7 @@ class OldCode:
         """The present symbol that a name missing on a class still leads to under its former name; "" for none."""
         for resolved in readings:
             if not resolved.complete and resolved.fit >= _LIKELY_FIT:
-                return self._reader.still_works(f"{resolved.owner}.{resolved.missing}")
+                return self._reader.history.still_works(f"{resolved.owner}.{resolved.missing}")
         return "" if readings and readings[0].fit >= _LIKELY_FIT else self._socket_still_taken(chain)
 
     def _socket_still_taken(self, chain: Chain) -> str:
@@ -127,9 +127,9 @@ class OldCode:
         named = set(words(chain.root)) - _SAY_NOTHING
         if side is None or name is None or name.kind != "key" or side.text not in SIDES:
             return ""
-        paths = self._reader.removed_by_key(key(f'{side.text}["{name.text}"]')) if named else ()
+        paths = self._reader.history.removed_by_key(key(f'{side.text}["{name.text}"]')) if named else ()
         fitting = (path for path in paths if named <= set(words(socket_node(path).removeprefix(TYPES))))
-        taken = [self._reader.still_works(path) for path in fitting]
+        taken = [self._reader.history.still_works(path) for path in fitting]
         return taken[0] if all(taken) and taken else ""
 
     def member(self, owner: str, name: str) -> RemovedSymbol | None:
@@ -177,7 +177,7 @@ class OldCode:
         """A function that one module had, called by its name alone: ``rna_idprop_ui_prop_get(bone, "x")``."""
         if not chain.steps or chain.steps[0].kind != "call" or not is_telling(chain.root):
             return None
-        named = self._reader.removed_named(chain.root)
+        named = self._reader.history.removed_named(chain.root)
         of_modules = [path for path in named if self._is_of_module(path)]
         removed = self._removed.of_path(of_modules[0]) if len(of_modules) == 1 else None
         return OldName(removed, chain.steps[1:]) if removed else None
@@ -229,7 +229,7 @@ class OldCode:
 
     def _fits_today(self, variable: str, name: str) -> bool:
         """Whether a class that a variable is named after has a property of some name."""
-        owners = (entry.owner for entry in self._reader.by_name(name) if entry.kind == "property")
+        owners = (entry.owner for entry in self._reader.names.by_name(name) if entry.kind == "property")
         return any(variable_fit(variable, last_name(owner)) >= _NAMED_AFTER for owner in owners)
 
     def _socket(self, chain: Chain) -> OldName | None:
@@ -237,9 +237,11 @@ class OldCode:
         for number, (before, step) in enumerate(zip(chain.steps, chain.steps[1:], strict=False)):
             if step.kind == "key" and before.text in SIDES:
                 nodes = usual_classes(chain.root)
-                if any(key(chain.root) in key(entry.owner) for entry in self._reader.by_name(step.text)):
+                if any(
+                    key(chain.root) in key(entry.owner) for entry in self._reader.names.by_name(step.text)
+                ):
                     return None
-                paths = self._reader.removed_by_key(key(f'{before.text}["{step.text}"]'))
+                paths = self._reader.history.removed_by_key(key(f'{before.text}["{step.text}"]'))
                 for path in paths:
                     node = socket_node(path)
                     named = number == 0 and (node in nodes or key(chain.root) in key(node))
@@ -284,7 +286,9 @@ class OldCode:
         fit, path = max(owners, default=(0.0, ""))
         # A class of today that has the member and fits as well is meant.
         today = [reading.symbols[0] for reading in readings if reading.complete]
-        today += [entry.owner for entry in self._reader.by_name(attribute.text) if entry.kind == "property"]
+        today += [
+            entry.owner for entry in self._reader.names.by_name(attribute.text) if entry.kind == "property"
+        ]
         best = max((variable_fit(chain.root, last_name(cls)) for cls in today), default=0.0)
         removed = self._removed.of_path(path) if fit >= max(_NAMED_AFTER, best + _BETTER) else None
         # The class that took its place may have the member, too.
@@ -299,12 +303,12 @@ class OldCode:
         own = chain.root in {"self", "cls"} or chain.root[:1].isupper()
         if own or any(reading.fit >= USUAL for reading in readings):
             return None
-        is_name = bool(chain.steps) and is_telling(chain.root) and not self._reader.by_name(chain.root)
+        is_name = bool(chain.steps) and is_telling(chain.root) and not self._reader.names.by_name(chain.root)
         if is_name and (removed := self._likeliest(chain.root, chain.root)):
             return OldName(removed, chain.steps)
         names = [(number, step.text) for number, step in enumerate(chain.steps, 1) if step.kind == "attr"]
         for number, name in names if chain.steps else [(0, chain.root)]:
-            if self._reader.by_name(name):
+            if self._reader.names.by_name(name):
                 return None
             if (is_telling(name) or _is_set_to_item(chain)) and (
                 removed := self._likeliest(name, chain.root if number == 1 else "")
@@ -321,7 +325,7 @@ class OldCode:
             None, (self._removed.of_path(f"{owner}.{name}") for owner in self._owners(name, variable))
         )
         known = [symbol for symbol in removed if symbol.successors or not variable]
-        weights = self._reader.weights({symbol.path.rpartition(".")[0] for symbol in known})
+        weights = self._reader.usage.weights({symbol.path.rpartition(".")[0] for symbol in known})
         return min(
             known,
             key=lambda symbol: (
@@ -352,7 +356,7 @@ class OldCode:
 
     def _lost_last(self, name: str, owners: Iterable[str]) -> list[str]:
         """Those of some classes that had a member longest: who writes it remembers what was there last."""
-        spans = {owner: self._reader.removed(f"{owner}.{name}") for owner in owners}
+        spans = {owner: self._reader.history.removed(f"{owner}.{name}") for owner in owners}
         last = {owner: version_key(span[1]) for owner, span in spans.items() if span and span[2]}
         return [owner for owner, version in last.items() if version == max(last.values())]
 
@@ -383,7 +387,7 @@ class OldCode:
             return removed
         # Of a class that had another name all items are gone, and of an unlisted enumeration those of one build.
         same = removed.path.startswith(symbol.path)
-        listed = removed.is_dated(self._reader.history_versions)
+        listed = removed.is_dated(self._reader.history.history_versions)
         return removed if same and listed and not symbol.enum_computed else None
 
     def _arguments(self, text: str, symbol: Symbol) -> Iterator[RemovedSymbol]:
@@ -409,7 +413,7 @@ class OldCode:
         """A parameter that a function had before; not one that only newer versions have."""
         removed = self._removed.of_part(symbol.path, f"({keyword})")
         known = removed is not None and (
-            removed.successors or removed.is_dated(self._reader.history_versions)
+            removed.successors or removed.is_dated(self._reader.history.history_versions)
         )
         return removed if known else None
 
@@ -430,13 +434,15 @@ class OldCode:
         match = _KEYWORD.fullmatch(text) if _has_quotes(text) else None
         if match is None:
             return
-        today = (owner for owner, item, _ in self._reader.enum_owners(key(match[3])) if item == match[3])
+        today = (
+            owner for owner, item, _ in self._reader.names.enum_owners(key(match[3])) if item == match[3]
+        )
         if any(owner.endswith((f"({match[1]})", f".{match[1]}")) for owner in today):
             return
         end = f"({match[1]}):{match[3]}"
-        paths = [path for path in self._reader.removed_named(match[3]) if path.endswith(end)]
+        paths = [path for path in self._reader.history.removed_named(match[3]) if path.endswith(end)]
         found = [one for one in map(self._removed.of_path, paths) if one and one.targets]
-        weights = self._reader.weights([one.path.removesuffix(end) for one in found])
+        weights = self._reader.usage.weights([one.path.removesuffix(end) for one in found])
         found.sort(key=lambda one: -weights.get(one.path.removesuffix(end), 0.0))
         yield from found[:1]
 
@@ -444,7 +450,7 @@ class OldCode:
         """The classes that one gets by former names which are quoted: ``nodes.new("ShaderNodeBsdfGlossy")``."""
         if not _has_quotes(text):
             return
-        yield from filter(None, map(self._reader.still_works, _quoted_paths(text)))
+        yield from filter(None, map(self._reader.history.still_works, _quoted_paths(text)))
 
     def in_strings(self, text: str) -> Iterator[RemovedSymbol]:
         """Removed classes, operators and properties whose names are quoted: ``nodes.new("ShaderNodeTexMusgrave")``."""

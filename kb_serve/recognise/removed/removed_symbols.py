@@ -15,7 +15,8 @@ from kb_serve.recognise.resolving.variables import usual_classes
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from kb_serve.reader import BaseReader, Successor
+    from kb_serve.lookups.records import Successor
+    from kb_serve.reader import BaseReader
 
 _INSTANCES = {CONTEXT: "bpy.context"}
 _LISTING = "listing of"  # how the sources begin that are no word on a change
@@ -101,10 +102,10 @@ class RemovedSymbolLookup:
 
     def of_path(self, path: str) -> RemovedSymbol | None:
         """A removed symbol by its exact path; None for what this version has or takes under the former name."""
-        span = self._reader.removed(path)
-        if span is None or self._reader.still_works(path):
+        span = self._reader.history.removed(path)
+        if span is None or self._reader.history.still_works(path):
             return None
-        successors = tuple(self._reader.successors(path) or dict.fromkeys(self._of_same_items(path)))
+        successors = tuple(self._reader.history.successors(path) or dict.fromkeys(self._of_same_items(path)))
         similar = () if successors else self._similar(path)
         return RemovedSymbol(path, *span, successors, similar)
 
@@ -113,7 +114,7 @@ class RemovedSymbolLookup:
         whole, mark, argument = split_path(path)
         symbol = self._reader.symbol(whole) if mark == "(" and argument.isidentifier() else None
         if symbol is None:
-            return tuple(self._reader.similar_names(path))
+            return tuple(self._reader.history.similar_names(path))
         labels = {parameter.name: parameter.label for parameter in symbol.parameters}
         alike = likely_keywords(argument, labels) if argument not in labels else ()
         return tuple((f"{whole}({name})", 1.0) for name in alike)
@@ -126,12 +127,12 @@ class RemovedSymbolLookup:
         items = self._items_beside(path) if item else frozenset()
         if not items:
             return
-        for other in self._reader.removed_named(item):
+        for other in self._reader.history.removed_named(item):
             holder = other.removesuffix(f":{item}")
             same = self._reader.symbol(holder) if other != path and "(" not in holder else None
             if same is None or not items <= {i.identifier for i in same.enum_items}:
                 continue
-            for successor in self._reader.successors(other):
+            for successor in self._reader.history.successors(other):
                 new = successor.target.removeprefix(f"{holder}:")
                 if new in items:
                     yield replace(successor, target=f"{path.removesuffix(item)}{new}")
@@ -193,7 +194,7 @@ class RemovedSymbolLookup:
         took its place does; empty for none.
         """
         now = {path: (*self._classes_now(path.rpartition(".")[0]),) for path in paths}
-        weights = self._reader.weights({cls for classes in now.values() for cls in classes})
+        weights = self._reader.usage.weights({cls for classes in now.values() for cls in classes})
         said = set(words(variable))
 
         def likely(path: str) -> tuple[int, float]:
@@ -221,7 +222,7 @@ class RemovedSymbolLookup:
 
     def paths_named(self, name: str) -> list[str]:
         """Paths of the removed members that are called exactly ``name``; none for a name that too many have."""
-        paths = [path for path in self._reader.removed_named(name) if path.endswith(f".{name}")]
+        paths = [path for path in self._reader.history.removed_named(name) if path.endswith(f".{name}")]
         return paths if len(paths) <= _MOST_OWNERS else []
 
     def of_socket(self, owner: str, name: str, variable: str) -> RemovedSymbol | None:
@@ -229,7 +230,7 @@ class RemovedSymbolLookup:
         nodes = usual_classes(variable)
         below = [
             path
-            for path in self._reader.removed_by_key(key(name))
+            for path in self._reader.history.removed_by_key(key(name))
             if path.endswith(name) and self._reader.descends(socket_node(path), owner)
         ]
         below.sort(key=lambda path: (socket_node(path) not in nodes, path))
@@ -238,15 +239,17 @@ class RemovedSymbolLookup:
     def of_sockets(self, side: str, name: str) -> list[str]:
         """Paths of the removed sockets of a name on a side of nodes; none where one is still taken under that name."""
         end = f'.{side}["{name}"]'
-        paths = [path for path in self._reader.removed_by_key(key(end)) if path.endswith(end)]
-        return [] if any(map(self._reader.still_works, paths)) else paths
+        paths = [path for path in self._reader.history.removed_by_key(key(end)) if path.endswith(end)]
+        return [] if any(map(self._reader.history.still_works, paths)) else paths
 
     def spelled(self, text: str) -> Iterator[RemovedSymbol]:
         """Removed symbols in any usual spelling; bare enum items only as code writes them."""
         items = [f":{text}"] if text.isupper() and "_" in text else []
-        named = [path for item in items for path in self._reader.removed_named(text) if path.endswith(item)]
-        known = [path for path in named if self._reader.successors(path)]
-        for path in (*self._reader.removed_by_key(key(text)), *known[:1]):
+        named = [
+            path for item in items for path in self._reader.history.removed_named(text) if path.endswith(item)
+        ]
+        known = [path for path in named if self._reader.history.successors(path)]
+        for path in (*self._reader.history.removed_by_key(key(text)), *known[:1]):
             if not self._is_meant(text, path):
                 continue
             if removed := self.of_path(path):
@@ -257,7 +260,7 @@ class RemovedSymbolLookup:
         if "." in text:
             return f".{path}".endswith(f".{text}")  # ``lamp.type`` is a variable's, ``Lamp.type`` the class's
         if ":" in path:
-            return text.isupper() and not self._reader.enum_owners(key(text))
+            return text.isupper() and not self._reader.names.enum_owners(key(text))
         return (
             path == text or " " in text or "_" in text or (text[:1].isupper() and path.endswith(f".{text}"))
         )
@@ -270,7 +273,7 @@ class RemovedSymbolLookup:
     def _class_successors(self) -> dict[str, list[str]]:
         """Removed class → the classes that took its place."""
         found: dict[str, list[str]] = {}
-        for path, target in self._reader.successors_of_classes():
+        for path, target in self._reader.history.successors_of_classes():
             found.setdefault(path, []).append(target)
         return found
 

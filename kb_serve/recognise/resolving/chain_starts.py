@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import words
 from kb_build.symbols.api_names import ID, TYPES
 from kb_build.symbols.python_values import is_new_list
-from kb_serve.reader import PROPERTIES
 from kb_serve.recognise.resolving.chain_values import ChainValue
 from kb_serve.recognise.resolving.subscripts import INPUT_KEY, NODES_MODIFIER, PROPERTIES_OF_MODIFIER
 from kb_serve.recognise.resolving.variables import USUAL, Variables
@@ -27,7 +26,8 @@ ROOTS = {
     "ops": "bpy.ops",
     "types": "bpy.types",
 }
-# Whose classes and modules scripts import by name.
+PROPERTIES = "bpy.props."  # whose functions scripts import by name
+# Whose classes and modules they do.
 _IMPORTED = ("mathutils.", "bmesh.types.", "bpy_extras.")
 _INSTANCE = "self"  # of a class of the script's own, whose attributes are like variables
 _NAMED_LIKE_A_MODULE = 0.9  # fit of a class that a variable is named after, which is no module then
@@ -71,7 +71,7 @@ class ChainStarts:
         """Whether a chain goes on from an attribute that only a script's own class can have: ``self.obj.location``."""
         if chain.root != _INSTANCE or not chain.steps[1:] or chain.steps[0].kind != "attr":
             return False
-        return not any(entry.group == "ui" for entry in self._reader.by_name(_first_name(chain)))
+        return not any(entry.group == "ui" for entry in self._reader.names.by_name(_first_name(chain)))
 
     def _of_variable(self, chain: Chain, *, of_instance: bool = False) -> Iterator[tuple[ChainValue, float]]:
         """(value, fit) for everything that a variable, or an attribute of a script's own instance, can stand for: by
@@ -85,7 +85,7 @@ class ChainStarts:
                 yield ChainValue(cls, cls), fit
         if not chain.steps:
             return
-        named = self._owners.heaviest(self._reader.by_name(chain.root)[:_MOST_CALLED_SO])
+        named = self._owners.heaviest(self._reader.names.by_name(chain.root)[:_MOST_CALLED_SO])
         lists = [self._values.of(entry) for entry in named if is_new_list(entry.kind, entry.type)]
         yield from ((value, 1.0) for value in lists[:1])
         for rank, entry in enumerate(named):
@@ -111,14 +111,14 @@ class ChainStarts:
         ):
             return False
         name = _first_name(chain)
-        return bool(self._reader.by_name(name)) and self._reader.entry(f"{module}.{name}") is None
+        return bool(self._reader.names.by_name(name)) and self._reader.entry(f"{module}.{name}") is None
 
     def _named_like_a_module(self, variable: str, member: str) -> list[str]:
         """The classes that have a member and are called like a variable: ``noise.outputs`` is of a noise texture."""
-        owners = {entry.owner for entry in self._reader.by_name(member)[:_MOST_CALLED_SO]}
+        owners = {entry.owner for entry in self._reader.names.by_name(member)[:_MOST_CALLED_SO]}
         below = (cls.path for owner in owners for cls in self._reader.descendants(owner))
         named = {path for path in (*owners, *below) if variable in words(path.rpartition(".")[2])}
-        weights = self._reader.weights(named)
+        weights = self._reader.usage.weights(named)
         return sorted(named, key=lambda path: (-weights.get(path, 0.0), len(path), path))
 
     def _is_used_as(self, value: ChainValue, chain: Chain) -> bool:

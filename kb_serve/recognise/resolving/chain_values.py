@@ -13,7 +13,8 @@ from kb_serve.recognise.resolving.untyped_properties import SEQUENCES, VALUES
 from simworlds.schemas.value_class import value_class
 
 if TYPE_CHECKING:
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _ARRAY = f"{TYPES}bpy_prop_array"
 _INSTANCES = {"bpy.context": CONTEXT, "bpy.data": BLEND_DATA}

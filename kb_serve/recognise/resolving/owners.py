@@ -11,7 +11,8 @@ from kb_serve.recognise.resolving.variables import classes_of_parts, usual_class
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.resolving.chains import Chain
 
 # Fit of the class that is likeliest meant by a member, for a variable whose name tells nothing; and of one that a part
@@ -58,7 +59,7 @@ class Owners:
         """
         match chain.steps:
             case (ChainStep(text="inputs" | "outputs"), ChainStep(kind="key", text=name), *_):
-                sockets = [entry for entry in self._reader.by_name(name) if entry.kind == "socket"]
+                sockets = [entry for entry in self._reader.names.by_name(name) if entry.kind == "socket"]
             case _:
                 return
         self._reader.entry.load(entry.owner for entry in sockets)
@@ -81,12 +82,18 @@ class Owners:
         """Members of one name, those first that count most, and whose classes do."""
         if len(members) < 2:
             return members
-        weights = self._reader.weights({path for entry in members for path in (entry.path, entry.owner)})
+        weights = self._reader.usage.weights(
+            {path for entry in members for path in (entry.path, entry.owner)}
+        )
         return sorted(members, key=lambda e: -weights.get(e.path, 0.0) - weights.get(e.owner, 0.0))
 
     def _having(self, member: str) -> Iterator[SymbolEntry]:
         """The classes that have a member of their own of a name, those first that are likeliest meant."""
-        named = [entry for entry in self._reader.by_name(member) if entry.kind != "socket"] if member else []
+        named = (
+            [entry for entry in self._reader.names.by_name(member) if entry.kind != "socket"]
+            if member
+            else []
+        )
         self._reader.entry.load(entry.owner for entry in named)
         for entry in self.heaviest(named)[:_MOST_READ]:
             owner = self._reader.entry(entry.owner)
@@ -95,7 +102,7 @@ class Owners:
 
     def _taking(self, chain: Chain, member: str) -> set[str]:
         """The classes of which an enumeration takes what a lone member is set to or compared with."""
-        found = (path for value in chain.values for path, *_ in self._reader.enum_owners(key(value)))
+        found = (path for value in chain.values for path, *_ in self._reader.names.enum_owners(key(value)))
         return {path.removesuffix(f".{member}") for path in found if path.endswith(f".{member}")}
 
     def _is_one_of(self, owner: str, classes: Sequence[str]) -> bool:

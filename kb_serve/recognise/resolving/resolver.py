@@ -26,7 +26,8 @@ from simworlds.schemas.value_class import value_class
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.resolving.chains import Chain
 
 _OBJECT_DATA = f"{TYPES}Object.data"
@@ -275,7 +276,7 @@ class Resolver:
             return []
         below = [
             entry
-            for entry in self._reader.by_name(name)
+            for entry in self._reader.names.by_name(name)
             if entry.kind != "socket" and self._reader.descends(entry.owner, value.cls)
         ]
         if below and by_what_holds_it(value.cls, name, self._reader):
@@ -342,17 +343,19 @@ class Resolver:
         """
         name = _NUMBERED.sub("", text)
         labelled = (
-            path for suffix in ("", *_ELEMENT_SUFFIXES) for _, path in self._reader.by_key(key(name) + suffix)
+            path
+            for suffix in ("", *_ELEMENT_SUFFIXES)
+            for _, path in self._reader.names.by_key(key(name) + suffix)
         )
         found: dict[str, None] = {}
-        for paths in (self._reader.made_as(name), labelled):
+        for paths in (self._reader.makers.made_as(name), labelled):
             named = {path for path in paths if path.startswith(TYPES) and self._reader.descends(path, cls)}
             found |= dict.fromkeys(sorted(named, key=lambda path: (len(path), path)))
         return tuple(found)
 
     def _socket(self, owner: str, side: str, name: str) -> Iterator[ChainValue]:
         """The sockets of that name: of the node's own class, or of every node where only ``Node`` is known."""
-        named = self._on_side(self._reader.by_name(name), owner, side)
+        named = self._on_side(self._reader.names.by_name(name), owner, side)
         found = named or self._on_side(self._with_key(side, name), owner, side)
         yield from map(self._values.of, self._owners.likeliest_sockets(found))
         if not found and self._may_have_any_socket(owner, side):
@@ -371,9 +374,9 @@ class Resolver:
         """The sockets that another text in brackets gives than their name: their identifier, or what they are called in
         some modes. Not what was their name in older versions, of which more is told.
         """
-        for _, path in self._reader.by_key(key(f"{side}{name}")):
+        for _, path in self._reader.names.by_key(key(f"{side}{name}")):
             symbol, entry = self._reader.symbol(path), self._reader.entry(path)
-            is_former = entry and self._reader.removed(f'{entry.owner}.{side}["{name}"]')
+            is_former = entry and self._reader.history.removed(f'{entry.owner}.{side}["{name}"]')
             if symbol and entry and name in symbol.socket_keys and not is_former:
                 yield entry
 
@@ -402,8 +405,8 @@ class Resolver:
         returned = self._values.returned(value.symbol)
         for _, choice in _QUOTED.findall(arguments):
             # A former name makes what has the name of today.
-            today = last_name(self._reader.still_works(f"{TYPES}{choice}")) or choice
-            if made := self._reader.class_made(value.symbol, returned, today):
+            today = last_name(self._reader.history.still_works(f"{TYPES}{choice}")) or choice
+            if made := self._reader.makers.class_made(value.symbol, returned, today):
                 return ChainValue(value.symbol, made)
         if returned == PROPERTIES_OF_OPERATORS and (operator := self._operator_in(arguments)):
             return ChainValue(value.symbol, operator)

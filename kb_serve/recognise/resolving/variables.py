@@ -215,9 +215,11 @@ class Variables:
     def _used(self, name: str, classes: Collection[str]) -> dict[str, float]:
         """Class → how much it counts, or the collection of that name which is of it."""
         held = {
-            entry.path: TYPES + entry.collection for entry in self._reader.by_name(name) if entry.collection
+            entry.path: TYPES + entry.collection
+            for entry in self._reader.names.by_name(name)
+            if entry.collection
         }
-        weights = self._reader.weights({*classes, *held})
+        weights = self._reader.usage.weights({*classes, *held})
         used = {cls: weights.get(cls, 0.0) for cls in classes}
         for path, cls in held.items():
             if cls in used:
@@ -225,7 +227,7 @@ class Variables:
         return used
 
     def _candidates(self, name: str, *, by_pointers: bool) -> Iterator[tuple[str, float]]:
-        named = self._reader.by_name(name)
+        named = self._reader.names.by_name(name)
         for entry in named:
             if entry.target and entry.kind == "context" and entry.type == "pointer":
                 yield TYPES + entry.target, 1.0
@@ -241,7 +243,7 @@ class Variables:
         for entry in self._reader.members(BLEND_DATA).values():
             if entry.type == "collection" and (fit := variable_fit(name, entry.target)) > 0:
                 yield TYPES + entry.target, fit if fit == 1.0 else min(fit, _POINTER)
-        spelled = [identifier for _, identifier in self._reader.by_key(key(name))]
+        spelled = [identifier for _, identifier in self._reader.names.by_key(key(name))]
         self._reader.entry.load(spelled)
         for entry in map(self._reader.entry, spelled):
             if entry and entry.kind == "class":

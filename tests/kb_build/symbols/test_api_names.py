@@ -31,7 +31,7 @@ def test_a_class_is_of_the_part_that_it_derives_from(cls: str, part: str, kb: Kn
 
 
 def test_classes_of_data_are_of_no_part(kb: KnowledgeBase) -> None:
-    assert [path for path, _ in kb.reader.data_classes if interface_part(path)] == []
+    assert [path for path, _ in kb.reader.names.data_classes if interface_part(path)] == []
 
 
 @pytest.mark.parametrize(

@@ -110,16 +110,16 @@ def test_context_members_have_two_names() -> None:
 
 
 def test_blenders_own_scripts_are_in_the_base(reader: BaseReader) -> None:
-    counts = reader.use_counts(
+    counts = reader.usage.use_counts(
         [f"{T}Object.location", f"{T}UILayout.prop", "bpy.context.object", f"{T}Object.no"]
     )
     assert counts[f"{T}UILayout.prop"] > counts[f"{T}Object.location"] > 20
     assert f"{T}Object.no" not in counts
-    uses = reader.uses(f"{T}Object.location")
+    uses = reader.usage.uses(f"{T}Object.location")
     assert len(uses) == 3
     assert all("location" in use.code and use.file.endswith(".py") and use.line > 0 for use in uses)
     # Only presets set it, on a member of the context that a panel gives.
-    assert not reader.uses(f"{T}ClothSettings.quality")
+    assert not reader.usage.uses(f"{T}ClothSettings.quality")
 
 
 def test_most_symbols_that_scripts_use_have_an_example(reader: BaseReader) -> None:
@@ -132,6 +132,6 @@ def test_most_symbols_that_scripts_use_have_an_example(reader: BaseReader) -> No
 
 
 def test_an_answer_shows_the_clearest_use(kb: KnowledgeBase, reader: BaseReader) -> None:
-    use = reader.uses("bpy.ops.mesh.primitive_cube_add")[0]
+    use = reader.usage.uses("bpy.ops.mesh.primitive_cube_add")[0]
     text = kb.query("bpy.ops.mesh.primitive_cube_add", max_tokens=4_000).text
     assert f"**Used** ({use.file}:{use.line})\n```python\n{use.code}\n```" in text

@@ -141,7 +141,7 @@ def test_hits_are_ranked_and_exist(kb: KnowledgeBase, reader: BaseReader) -> Non
         answer = kb.query(query, limit=MAX_LIMIT)
         assert (answer.kind == "none") == (answer.hits == ())
         for hit in answer.hits:
-            assert reader.entry(hit.id) or reader.page_entry(hit.id), hit.id
+            assert reader.entry(hit.id) or reader.manual.page_entry(hit.id), hit.id
             assert hit.title
             assert 0 <= hit.score <= 1
         if answer.hits:

@@ -74,7 +74,7 @@ def test_the_section_asked_for_comes_first(reader: BaseReader, kb: KnowledgeBase
 
 def test_an_unknown_page_renders_nothing(reader: BaseReader) -> None:
     assert list(page_blocks("nowhere", reader)) == []
-    assert reader.manual_url("bpy.types.Nothing") == ""
+    assert reader.manual.manual_url("bpy.types.Nothing") == ""
 
 
 def test_a_passage_of_an_engines_page_names_the_engine(base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -98,14 +98,14 @@ def test_a_symbol_has_the_manuals_words_from_its_own_place(kb: KnowledgeBase) ->
 
 
 def test_a_page_that_only_lists_others_says_which(kb: KnowledgeBase, reader: BaseReader) -> None:
-    page = reader.page_entry("physics/cloth/settings/index")
+    page = reader.manual.page_entry("physics/cloth/settings/index")
     assert page is not None
     assert said_of(page, reader).startswith("Contents: Collisions")
     assert said_of(page._replace(summary="Of cloth."), reader) == "Of cloth."
 
 
 def test_a_summary_that_a_language_model_wrote_is_marked(reader: BaseReader) -> None:
-    page = reader.page_entry("physics/cloth/introduction")
+    page = reader.manual.page_entry("physics/cloth/introduction")
     assert page is not None
     assert "AI summary" not in said_of(page._replace(summary_method="extractive"), reader)
     for method in ("claude", "shipped"):

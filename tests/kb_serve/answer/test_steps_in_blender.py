@@ -65,8 +65,8 @@ def test_a_node_of_textures_is_put_in_the_tree_that_a_texture_has(reader: BaseRe
 
 
 def test_whatever_can_be_made_is_made_without_an_error(reader: BaseReader) -> None:
-    data = [path for path, name in reader.data_classes if path == f"{TYPES}{name}"]
-    makeable = sorted(reader.creations(data))[::7]
+    data = [path for path, name in reader.names.data_classes if path == f"{TYPES}{name}"]
+    makeable = sorted(reader.makers.creations(data))[::7]
     told = {
         path: steps(reader, path.removeprefix(TYPES).lower(), path.removeprefix(TYPES)) for path in makeable
     }

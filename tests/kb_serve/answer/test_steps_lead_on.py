@@ -145,7 +145,7 @@ def test_an_operator_is_run_in_the_mode_that_heads_what_the_manual_says_of_it(
         page = Page(slug, "manual", "5.1", "Assignment", sections)
         write_base(folder / "base.sqlite", Contents(symbols, (page,), links, {}))
         with closing(BaseReader(folder / "base.sqlite")) as own:
-            assert own.passage(assign)
+            assert own.manual.passage(assign)
             told = " ".join(told_of(own, "assignment", (), ("object.material_slot_assign",)))
         assert "material_slot_assign()" in told
         assert ("mode_set(mode='EDIT')" in told) is entered

@@ -46,7 +46,7 @@ def exists(reader: BaseReader, path: str) -> bool:
         return True
     owner, colon, value = path.rpartition(":")
     if colon:
-        return any(row[:2] == (owner, value) for row in reader.enum_owners(key(value)))
+        return any(row[:2] == (owner, value) for row in reader.names.enum_owners(key(value)))
     called, _, argument = path.removesuffix(")").partition("(")
     symbol = reader.symbol(called)
     return symbol is not None and argument in {parameter.name for parameter in symbol.parameters}
@@ -76,7 +76,7 @@ def test_every_old_name_is_gone_and_every_new_one_is_there(reader: BaseReader) -
         for change in CHANGE.finditer(rest):
             for name in NAME.findall(change["old"]):
                 old = owner + ("" if name[0] in ":(" or not owner else ".") + name
-                assert reader.removed(old) is not None, line
+                assert reader.history.removed(old) is not None, line
                 assert not exists(reader, old), line
                 told += 1
             if change["new"]:

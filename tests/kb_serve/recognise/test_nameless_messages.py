@@ -439,7 +439,7 @@ def test_what_they_lead_to_exists_here_or_in_a_newer_blender(kb: KnowledgeBase, 
     lacking = {path for path in paths if "/" not in path and kb.symbol(path) is None}
     first = {one.paths[0] for one in NAMELESS_MESSAGES} | {one.lacking for one in NAMELESS_MESSAGES}
     assert lacking <= first
-    assert {path for path in lacking if reader.removed(path) is None} == set()
+    assert {path for path in lacking if reader.history.removed(path) is None} == set()
     shipped = (
         file.read_text(encoding="utf-8") for file in (REPO / "corpora" / "summaries").glob("5.1.*.jsonl")
     )

@@ -8,7 +8,8 @@ import pytest
 from other_versions import base_of
 
 from kb_build.symbols.paths import as_code
-from kb_serve.reader import BaseReader, Successor
+from kb_serve.lookups.records import Successor
+from kb_serve.reader import BaseReader
 from kb_serve.recognise.notes import Notes
 from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 

@@ -72,7 +72,9 @@ def test_a_call_is_the_function_or_operator_called(
 
 def only(reader: BaseReader, spelled: str) -> bool:
     """Whether nothing else has these letters: ``Annotation layers`` may be AnnotationLayers too."""
-    return len({identifier for form, identifier in reader.by_key(key(spelled)) if form <= FORM_SHORT}) == 1
+    return (
+        len({identifier for form, identifier in reader.names.by_key(key(spelled)) if form <= FORM_SHORT}) == 1
+    )
 
 
 DOTTED = {
@@ -344,9 +346,9 @@ def test_a_lone_name_is_said_to_be_none_only_if_it_is_none(kb: KnowledgeBase, re
     names = [name for (name,) in rows if name.isidentifier() and not name.isupper()]
     for name in random.Random(SEED).sample(names, examples(100)):
         turned = "_".join(reversed(name.split("_"))).strip("_")
-        is_none = not reader.by_key(key(turned)) and not turned.isupper() and "_" in turned
+        is_none = not reader.names.by_key(key(turned)) and not turned.isupper() and "_" in turned
         # What is none, or a part of another name, is read as words, not as a name.
-        is_none = is_none and turned.isidentifier() and not reader.is_written(turned)
+        is_none = is_none and turned.isidentifier() and not reader.names.is_written(turned)
         for written, expected in ((name, False), (turned, is_none)):
             answer = kb.query(written, max_tokens=200)
             said = any(note.startswith(f"Nothing is called `{written}`") for note in answer.notes)
@@ -486,7 +488,7 @@ def test_removed_symbols_are_noted_with_their_versions(
         answer = kb.query(path if prefix else path.removeprefix(TYPES))
         if any("still works here" in note for note in answer.notes):
             continue
-        first, _, gone = reader.removed(path) or ("", "", "")
+        first, _, gone = reader.history.removed(path) or ("", "", "")
         note = next(note for note in answer.notes if f"`{path}` does not exist" in note)
         assert (gone or f"new in {first}") in note, note
 
@@ -518,7 +520,7 @@ def test_what_takes_a_removed_symbols_place_comes_first(kb: KnowledgeBase, reade
     )
     assert len(rows) > 100
     for (path,) in random.Random(SEED).sample(rows, examples(100)):
-        targets = {plain_path(successor.target) for successor in reader.successors(path)}
+        targets = {plain_path(successor.target) for successor in reader.history.successors(path)}
         assert first_id(kb.query(path)) in targets, path
 
 

@@ -77,7 +77,7 @@ def test_successors_exist_and_exclude_guesses(reader: BaseReader, removed: Remov
     for (path,) in rows:
         symbol = removed.of_path(path)
         if symbol is None:
-            assert reader.still_works(path)
+            assert reader.history.still_works(path)
             continue
         assert symbol.similar == ()
         assert symbol.without_successor is not bool(symbol.targets)

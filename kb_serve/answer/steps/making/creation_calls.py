@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from kb_serve.answer.steps.making.instances import Instances
     from kb_serve.answer.steps.making.trees import TreeSteps
     from kb_serve.answer.steps.scene.new_scene import NewScene
-    from kb_serve.reader import Creation
+    from kb_serve.lookups.records import Creation
 
 # What a maker must have made before what it makes is of use.
 _FIRST = {
@@ -73,7 +73,7 @@ class CreationCalls:
         """The steps that make what must be there before an operator makes an instance of a class."""
         reader = self._scene.reader
         for earlier in calls_before(reader, cls, call):
-            made = reader.made_by_call(earlier)
+            made = reader.makers.made_by_call(earlier)
             if made and made not in self._scene.shown:
                 yield self._scene.making(made, earlier)
         if call.startswith(OPERATORS) and (operator := reader.symbol(call.partition("(")[0])):

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from kb_serve.answer.steps.scene.new_scene import NewScene
-    from kb_serve.reader import Creation, SymbolEntry
+    from kb_serve.lookups.records import Creation, SymbolEntry
 
 _DEEPEST = 6  # holders of holders
 _EDIT_BONES = "edit_bones"
@@ -113,7 +113,7 @@ class Instances:
         if cls == MESH:
             self._scene.variables.add(cls, "mesh")
             return Ready([f"`mesh = {self._scene.obj.mesh_object()}.data`, of a mesh object"], "mesh")
-        creation = self._reader.creations([cls]).get(cls)
+        creation = self._reader.makers.creations([cls]).get(cls)
         if creation is None or creation.maker.startswith(OPERATORS):
             return self._reached(cls) or self._of_a_kind(cls, depth)
         ready = self._call(creation, depth) if depth < _DEEPEST else None
@@ -132,7 +132,7 @@ class Instances:
     def _simplest(self, cls: str, depth: int) -> tuple[str, Creation | None]:
         """Of the classes below one that is not made for itself the one that needs the least, and what makes it."""
         below = [entry.path for entry in self._reader.descendants(cls)] if depth < _DEEPEST else []
-        made = {path: one for path, one in self._reader.creations(below).items() if one.choice}
+        made = {path: one for path, one in self._reader.makers.creations(below).items() if one.choice}
         needed = {path: self._scene.makers.count_things(one) for path, one in made.items()}
         least = min(made, key=lambda path: (needed[path], len(made[path].call), path), default="")
         return least, made.get(least)

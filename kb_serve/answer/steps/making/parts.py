@@ -12,7 +12,8 @@ if TYPE_CHECKING:
 
     from kb_build.symbols.records import EnumItem
     from kb_serve.answer.steps.names.topic_names import TopicNames
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _MOST_CALLS = 2  # through one pointer
 _VALUES = 8  # of one argument
@@ -24,7 +25,7 @@ def parts(cls: str, variable: str, names: TopicNames, reader: BaseReader) -> Ite
         for entry in reader.members(ancestor.path).values():
             target = f"{TYPES}{entry.target}"
             if entry.type == "pointer" and entry.is_read_only and target not in names.classes:
-                for function in reader.heaviest(reader.members(target).values())[:_MOST_CALLS]:
+                for function in reader.usage.heaviest(reader.members(target).values())[:_MOST_CALLS]:
                     if function.kind == "function" and function.name.startswith("new"):
                         choices = _choices(function, cls, reader)
                         yield f"`{variable}.{entry.name}.{call_of(function)}`{choices}"

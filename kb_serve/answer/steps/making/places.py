@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from kb_serve.answer.steps.making.instances import Instances
     from kb_serve.answer.steps.names.topic_names import TopicNames
     from kb_serve.answer.steps.scene.new_scene import NewScene
-    from kb_serve.reader import SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
 
 _MOST = 4  # that are looked at
 
@@ -46,7 +46,7 @@ class PlaceSteps:
 
     def _assigned(self, variable: str, pointers: list[SymbolEntry]) -> Iterator[str]:
         """The heaviest pointer to it whose owner is there, or can be made."""
-        for pointer in self._reader.heaviest(pointers)[:_MOST]:
+        for pointer in self._reader.usage.heaviest(pointers)[:_MOST]:
             owner = pointer.owner
             # A modifier of the object itself cannot lead to it, nor can its own pointers.
             if variable == OBJ and (owner == OBJECT or self._is_on_object(owner)):
@@ -65,7 +65,7 @@ class PlaceSteps:
                 return
 
     def _is_on_object(self, cls: str) -> bool:
-        creation = self._reader.creations([cls]).get(cls)
+        creation = self._reader.makers.creations([cls]).get(cls)
         return creation is not None and creation.call.startswith("obj.")
 
     def _deforming(self, cls: str) -> Iterator[str]:
@@ -73,7 +73,7 @@ class PlaceSteps:
         where it belongs to the topic.
         """
         modifier = f"{cls}Modifier"
-        creation = self._reader.creations([modifier]).get(modifier)
+        creation = self._reader.makers.creations([modifier]).get(modifier)
         pointer = self._reader.entry(f"{modifier}.object")
         if creation and pointer and pointer.target == "Object":
             call = creation.call.replace("obj.", "other.", 1)
@@ -84,7 +84,7 @@ class PlaceSteps:
 
     def _linked(self, cls: str, variable: str) -> str:
         """The call that links a data-block to where it counts: a collection to the scene's."""
-        for entry in self._reader.by_name("link"):
+        for entry in self._reader.names.by_name("link"):
             symbol = self._reader.symbol(entry.path) if entry.kind == "function" else None
             if symbol is None or cls.removeprefix(TYPES) not in {
                 p.type for p in symbol.parameters if p.required
@@ -102,5 +102,5 @@ class PlaceSteps:
 
     def _called_as_topic(self) -> list[SymbolEntry]:
         """Pointers called as the topic is: ``Scene.camera``."""
-        entries = [entry for name in self._names.stems() for entry in self._reader.by_name(name)]
+        entries = [entry for name in self._names.stems() for entry in self._reader.names.by_name(name)]
         return [entry for entry in entries if entry.kind == "property" and entry.type == "pointer"]

@@ -76,7 +76,7 @@ class TreeSteps:
 
     def group(self, tree: str, holder: str = "") -> Iterator[str]:
         """A tree that is a data-block of its own. ``holder``: what it becomes the tree of, where that is known."""
-        creation = self._reader.creations([tree]).get(tree)
+        creation = self._reader.makers.creations([tree]).get(tree)
         if creation is None:
             return
         yield self._scene.making(tree, creation.call)
@@ -91,7 +91,7 @@ class TreeSteps:
     def _new(self, tree: str, holder: str) -> Iterator[str]:
         usual, name = _EMBEDDED.get(tree, ("", ""))
         holder = holder or usual
-        made = self._reader.creations([holder]).get(holder)
+        made = self._reader.makers.creations([holder]).get(holder)
         if made is None:
             yield from self.group(tree)
             return

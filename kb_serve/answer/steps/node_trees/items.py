@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_serve.answer.steps.scene.new_scene import NewScene
-    from kb_serve.reader import Creation, SymbolEntry
+    from kb_serve.lookups.records import Creation, SymbolEntry
 
 
 class NodeItems:
@@ -52,7 +52,7 @@ class NodeItems:
     def _adding(self, entry: SymbolEntry) -> Creation | None:
         """What adds an item to a collection; None for other members, and for a collection that nothing adds to."""
         item = f"{TYPES}{entry.target}"
-        creation = self._reader.creations([item]).get(item) if entry.type == "collection" else None
+        creation = self._reader.makers.creations([item]).get(item) if entry.type == "collection" else None
         own = f"{TYPES}{entry.collection}"
         return creation if creation and creation.maker.rpartition(".")[0] == own else None
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from kb_serve.answer.steps.making.creation_calls import CreationCalls
     from kb_serve.answer.steps.making.trees import TreeSteps
     from kb_serve.answer.steps.scene.new_scene import NewScene
-    from kb_serve.reader import Creation, SymbolEntry
+    from kb_serve.lookups.records import Creation, SymbolEntry
 
 _FUNCTIONS = 3  # of one node
 # Those whose new trees have a node that ends them, and the nodes that these end take of those of shaders.
@@ -66,13 +66,13 @@ class NodeSteps:
     def _in_tree(self, pointer: SymbolEntry, holder: str) -> Iterator[str]:
         """The nodes of the tree that a pointer of a holder leads to."""
         kinds = self._reader.descendants(f"{TYPES}{pointer.target.removesuffix('Tree')}")
-        nodes = [node.path for node in self._reader.heaviest(kinds)]
-        known = self._reader.creations(nodes)
+        nodes = [node.path for node in self._reader.usage.heaviest(kinds)]
+        known = self._reader.makers.creations(nodes)
         only = _WITH_OUTPUT.get(holder)
         creations = {node: known[node] for node in nodes if node in known and (not only or node in only)}
         tree, variable = f"{TYPES}{pointer.target}", self._scene.variables.of(holder)
         is_given = not pointer.is_read_only  # there is none yet
-        if not creations or (is_given and not self._reader.creations([tree])):
+        if not creations or (is_given and not self._reader.makers.creations([tree])):
             return
         self._scene.shown.add(tree)
         if is_given:
@@ -121,7 +121,7 @@ class NodeSteps:
 
     def _zone(self, first: str, last: str, tree: str) -> Iterator[str]:
         """How the two ends of a zone are made where they are not there, paired and linked."""
-        known = self._reader.creations([first, last])
+        known = self._reader.makers.creations([first, last])
         for node in (first, last):
             if node not in self._scene.shown and node in known:
                 yield from self._calls.making({node: known[node]})

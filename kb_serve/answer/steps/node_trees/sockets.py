@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import SIDES
 from kb_build.symbols.lines import written
 from kb_build.symbols.records import HIDDEN, PAIRS
-from kb_serve.reader import EXTEND
+from kb_serve.lookups.symbols import EXTEND
 
 if TYPE_CHECKING:
     from kb_serve.answer.steps.node_trees.items import NodeItems

@@ -25,7 +25,7 @@ def before(operator: Symbol, scene: NewScene) -> Iterator[str]:
     calls = calls_needed(operator)
     if all(_is_taken(call, scene) for call in calls):
         yield from scene.pointers.calls(
-            call for call in calls if scene.reader.made_by_call(call) not in scene.shown
+            call for call in calls if scene.reader.makers.made_by_call(call) not in scene.shown
         )
     mode = _mode_of_heading(operator, scene.reader)
     if ready := scene.obj.to_mode(mode) if mode else scene.obj.ready_for(operator):
@@ -41,8 +41,8 @@ def before(operator: Symbol, scene: NewScene) -> Iterator[str]:
 
 def _is_taken(call: str, scene: NewScene) -> bool:
     """Whether the object is of a type that takes what a call makes on it."""
-    cls = scene.reader.made_by_call(call)
-    creation = scene.reader.creations([cls]).get(cls) if cls else None
+    cls = scene.reader.makers.made_by_call(call)
+    creation = scene.reader.makers.creations([cls]).get(cls) if cls else None
     return creation is None or scene.obj.is_made_on(call.partition(".")[0], creation)
 
 
@@ -50,8 +50,8 @@ def _mode_of_heading(operator: Symbol, reader: BaseReader) -> str:
     """The mode whose name heads what the manual says of an operator, where its poll takes any: in others it does
     nothing. Empty for none.
     """
-    place = None if operator_active(operator)[1] else reader.passage(operator.path)
-    page, modes = reader.page(place[0]) if place else None, reader.symbol(_MODE)
+    place = None if operator_active(operator)[1] else reader.manual.passage(operator.path)
+    page, modes = reader.manual.page(place[0]) if place else None, reader.symbol(_MODE)
     if place is None or page is None or modes is None:
         return ""
     heading = page.sections[place[1]].title

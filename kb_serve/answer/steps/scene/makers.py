@@ -12,7 +12,8 @@ from kb_build.symbols.records import ENDS_WITHOUT
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from kb_serve.reader import BaseReader, Creation
+    from kb_serve.lookups.records import Creation
+    from kb_serve.reader import BaseReader
 
 
 class Makers:
@@ -39,7 +40,7 @@ class Makers:
         maker = self._record(creation.maker)
         for parameter in maker.parameters if maker else ():
             cls = f"{TYPES}{parameter.type}"
-            if parameter.required and self._reader.creations([cls]):
+            if parameter.required and self._reader.makers.creations([cls]):
                 yield parameter.name, cls
 
     def things_by_name(self, creation: Creation) -> Iterator[tuple[str, str]]:
@@ -69,7 +70,7 @@ class Makers:
         maker = self._record(creation.maker)
         steps: list[str] = []
         for needed in maker.flagged(ENDS_WITHOUT) if maker else ():
-            pointers = self._reader.by_name(needed.rpartition(".")[2])
+            pointers = self._reader.names.by_name(needed.rpartition(".")[2])
             target = next((entry.target for entry in pointers if entry.type == "pointer"), "")
             if needed not in self._given and (value := there(f"{TYPES}{target}")):
                 self._given.add(needed)
@@ -81,7 +82,7 @@ class Makers:
         made_by = maker.rpartition(".")[0].removeprefix(TYPES)
         owners = (
             entry.owner
-            for entry in self._reader.by_name(holder)
+            for entry in self._reader.names.by_name(holder)
             if made_by in {entry.collection, entry.target if entry.type == "pointer" else ""}
         )
         return next(owners, "")

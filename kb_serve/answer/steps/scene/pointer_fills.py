@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol
     from kb_serve.answer.steps.names.variable_names import VariableNames
     from kb_serve.answer.steps.scene.working_object import WorkingObject
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _FIRST_WORD = re.compile(r"^(?!bpy\b|obj\b|scene\b)[a-z_]+\.(?=\w+(?: = |\())")
 _PARTS = re.compile(r"\.(?![^\[]*\])")  # between names, and not in a key
@@ -103,7 +104,7 @@ class PointerFills:
 
     def loading(self, cls: str) -> str:
         """The call that loads a data-block which nothing but a file makes, as a film; empty for none."""
-        for entry in self._reader.by_name("load"):
+        for entry in self._reader.names.by_name("load"):
             symbol = self._reader.symbol(entry.path)
             holders = self._reader.members(BLEND_DATA).values()
             holder = next((one.name for one in holders if f"{TYPES}{one.collection}" == entry.owner), "")
@@ -168,7 +169,7 @@ class PointerFills:
         target = f"{TYPES}{pointer.target}"
         if there := self._variables.there(target):
             return Ready([], there)
-        made = self._reader.creations([target]).get(target)
+        made = self._reader.makers.creations([target]).get(target)
         call = made.call if made else self.loading(pointer.target)
         if READ_ONLY in pointer.flags or not call.startswith("bpy.data."):
             return None
@@ -182,7 +183,7 @@ class PointerFills:
         """
         kinds = [kind.path for kind in self._reader.descendants(f"{TYPES}{collection.target}")]
         begins = f"{OBJ}.{collection.name}.new({element.partition('[')[2].rstrip(']')},"
-        made = self._reader.creations(kinds).items() if above == OBJ else ()
+        made = self._reader.makers.creations(kinds).items() if above == OBJ else ()
         cls, call = next(((kind, one.call) for kind, one in made if one.call.startswith(begins)), ("", ""))
         if not cls or call in self._called:
             return None
@@ -194,7 +195,7 @@ class PointerFills:
     def _adding(self, collection: SymbolEntry) -> list[str] | None:
         """The steps by which an operator adds an element to a collection of the object; None if no such is known."""
         target = f"{TYPES}{collection.target}"
-        made = self._reader.creations([target]).get(target)
+        made = self._reader.makers.creations([target]).get(target)
         if made is None or made.choice or not made.call.startswith(OPERATORS):
             return None
         if made.call in self._called:

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol
     from kb_serve.answer.steps.names.variable_names import VariableNames
     from kb_serve.answer.steps.scene.makers import Makers
-    from kb_serve.reader import BaseReader, Creation
+    from kb_serve.lookups.records import Creation
+    from kb_serve.reader import BaseReader
 
 ACTIVATE = "bpy.context.view_layer.objects.active = obj"
 _SCENE = f"{TYPES}Scene"
@@ -54,7 +55,9 @@ class WorkingObject:
 
     def made_of(self, data: str) -> list[str]:
         """The steps that make an object of new data, given by its class; none for what is no object's data."""
-        creation = self._reader.creations([OBJECT]).get(OBJECT) if self._reader.is_object_data(data) else None
+        creation = (
+            self._reader.makers.creations([OBJECT]).get(OBJECT) if self._reader.is_object_data(data) else None
+        )
         if creation is None:
             return []
         self._replace(self._reader.object_type(data))

@@ -32,7 +32,7 @@ def choice_of(settings: str, reader: BaseReader) -> Choice | None:
         return None
     choices = [
         (f"{held(owner.reached)}.{enum.name}", value, usual_default(enum))
-        for path, value, _ in reader.enum_owners(key(name))
+        for path, value, _ in reader.names.enum_owners(key(name))
         if (enum := reader.symbol(path))
         and (owner := reader.symbol(enum.owner))
         and owner.reached.startswith(f"{holder}.")

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from kb_serve.answer.steps.names.topic_names import TopicNames
     from kb_serve.answer.steps.scene.new_scene import NewScene
-    from kb_serve.reader import Creation, SymbolEntry
+    from kb_serve.lookups.records import Creation, SymbolEntry
 
 LEAST = 1  # weight of a collection or function
 MOST_MEMBERS = 3  # collections, and functions
@@ -56,7 +56,7 @@ class ElementSteps:
             may_have_some = symbol is not None and EMPTY not in symbol.flags
             if not (may_have_some and self.belongs(element)) or self._added_by(entry):
                 continue
-            settings = "" if self._reader.creations([element]) else settings_of(element, self._reader)
+            settings = "" if self._reader.makers.creations([element]) else settings_of(element, self._reader)
             if not settings:
                 continue
             self._scene.shown.add(element)
@@ -72,11 +72,11 @@ class ElementSteps:
             pointer = (
                 self._reader.symbol(entry.path) if entry.type == "pointer" and self.belongs(target) else None
             )
-            if pointer is None or empty_when_new(pointer) or self._reader.creations([target]):
+            if pointer is None or empty_when_new(pointer) or self._reader.makers.creations([target]):
                 continue
             functions = (one for one in self._reader.members(target).values() if one.kind == "function")
             adding = (one for one in functions if one.name.startswith(_ADDING))
-            main = self._reader.heaviest(adding, LEAST)[:1]
+            main = self._reader.usage.heaviest(adding, LEAST)[:1]
             calls += [f"{variable}.{entry.name}.{call_of(function)}" for function in main]
         return calls
 
@@ -91,7 +91,7 @@ class ElementSteps:
             for entry in self._reader.members(cls).values()
             if entry.type == "collection" and entry.target != _STUB
         ]
-        main = self._reader.heaviest(all_, LEAST)[:MOST_MEMBERS]
+        main = self._reader.usage.heaviest(all_, LEAST)[:MOST_MEMBERS]
         own = (entry for entry in all_ if entry.owner == cls and entry not in main and self._added_by(entry))
         return [*main, *own][:MOST_MEMBERS]
 
@@ -127,7 +127,9 @@ class ElementSteps:
             self._reader.members(f"{TYPES}{collection.collection}").values() if collection.collection else ()
         )
         adding = [one for one in functions if one.kind == "function" and one.name.startswith(_ADDING)]
-        return next((self._given_elements(one, collection) for one in self._reader.heaviest(adding)), "")
+        return next(
+            (self._given_elements(one, collection) for one in self._reader.usage.heaviest(adding)), ""
+        )
 
     def _given_elements(self, function: SymbolEntry, collection: SymbolEntry) -> str:
         """A call that adds to a collection, given an element that is there: the object that is linked. What has the
@@ -150,6 +152,6 @@ class ElementSteps:
     def _adding(self, collection: SymbolEntry) -> Creation | None:
         """What adds to a collection; None where nothing does."""
         target = f"{TYPES}{collection.target}"
-        made = self._reader.creations([target]).get(target)
+        made = self._reader.makers.creations([target]).get(target)
         adds = made is not None and made.maker.rpartition(".")[0] == f"{TYPES}{collection.collection}"
         return made if adds else None

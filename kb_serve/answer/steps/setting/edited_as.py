@@ -21,7 +21,9 @@ def edited_as(cls: str, variable: str, reader: BaseReader) -> Iterator[str]:
     to read it and to write it back; none where no class does.
     """
     name = last_name(cls).lower()
-    editors = {entry.owner for entry in reader.by_name(f"from_{name}") if not entry.owner.startswith(TYPES)}
+    editors = {
+        entry.owner for entry in reader.names.by_name(f"from_{name}") if not entry.owner.startswith(TYPES)
+    }
     for editor in sorted(editors):
         module = editor.partition(".")[0]
         if not reader.entry(f"{editor}.to_{name}") or not reader.entry(f"{module}.new"):
@@ -29,6 +31,6 @@ def edited_as(cls: str, variable: str, reader: BaseReader) -> Iterator[str]:
         yield f"`{_SHORT} = {module}.new()` → `{last_name(editor)}`"
         yield f"`{_SHORT}.from_{name}({variable})`"
         functions = (one for one in reader.members(f"{module}.ops").values() if one.kind == "function")
-        if heaviest := [one.path for one in reader.heaviest(functions)[:_MOST]]:
+        if heaviest := [one.path for one in reader.usage.heaviest(functions)[:_MOST]]:
             yield f"call `{heaviest[0]}({_SHORT}, …)`, " + ", ".join(f"`{path}`" for path in heaviest[1:])
         yield f"`{_SHORT}.to_{name}({variable})`"

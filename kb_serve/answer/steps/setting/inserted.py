@@ -25,7 +25,7 @@ def inserted(cls: str, function: str, scene: NewScene) -> Iterator[str]:
     holder, _, collection = held(symbol.reached).rpartition(".") if symbol else ("", "", "")
     is_below = holder.startswith(f"{OBJ}.") and collection.endswith("[0]")
     name = collection.partition("[")[0]
-    owner = next((one.owner for one in scene.reader.by_name(name) if f"{TYPES}{one.target}" == cls), "")
+    owner = next((one.owner for one in scene.reader.names.by_name(name) if f"{TYPES}{one.target}" == cls), "")
     if not (owner and is_below and function.endswith(f"_{_INSERTS}")):
         return
     variable = scene.variables.of(owner)

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol
     from kb_serve.answer.steps.names.topic_names import TopicNames
     from kb_serve.answer.steps.scene.new_scene import NewScene
-    from kb_serve.reader import Creation, SymbolEntry
+    from kb_serve.lookups.records import Creation, SymbolEntry
 
 _HOLDERS = 4  # pointers of a thing whose settings are shown
 _OTHER_KINDS = 4  # besides the one that is made, of which each is told
@@ -53,7 +53,7 @@ class SettingSteps:
             yield f"set on `{variable}`: {own}"
         # The class that the call makes, where that is one of several below it: a point light for a light.
         kinds = [one.path for one in self._reader.descendants(cls)] if variable else []
-        made_kinds = self._reader.creations(kinds)
+        made_kinds = self._reader.makers.creations(kinds)
         for kind, made in made_kinds.items():
             of_kind = own_settings(kind, MOST_SETTINGS, self._reader) or settings_of(kind, self._reader)
             if made.call == creation.call and of_kind:
@@ -106,9 +106,9 @@ class SettingSteps:
             for entry in entries
             if entry.kind == "function" and (UNDO | _LOOK_UP).isdisjoint(entry.name.split("_"))
         ]
-        uses = self._reader.use_counts([entry.path for entry in functions])
+        uses = self._reader.usage.use_counts([entry.path for entry in functions])
         called = (entry for entry in functions if uses.get(entry.path) or not self._answers(entry))
-        return self._reader.heaviest(called, LEAST)[:MOST_MEMBERS]
+        return self._reader.usage.heaviest(called, LEAST)[:MOST_MEMBERS]
 
     def _answers(self, function: SymbolEntry) -> bool:
         """Whether a function gives values that are no things."""
@@ -121,7 +121,7 @@ class SettingSteps:
         waiting, left = [(cls, variable)], _HOLDERS
         while waiting and left:
             owner, above = waiting.pop(0)
-            for entry in self._reader.heaviest(self._reader.members(owner).values()):
+            for entry in self._reader.usage.heaviest(self._reader.members(owner).values()):
                 pointer = self._pointer(entry)
                 if pointer is None:
                     continue
@@ -154,7 +154,7 @@ class SettingSteps:
         """What a further instance is called, and the steps that make it on an object of its own: one value of a setting
         makes one thing, another the next in place of the first. No name where it is on no object.
         """
-        creation = self._reader.creations([cls]).get(cls)
+        creation = self._reader.makers.creations([cls]).get(cls)
         if creation is None or not creation.call.startswith(f"{OBJ}."):
             return "", []
         name = pointer.partition("_")[0]

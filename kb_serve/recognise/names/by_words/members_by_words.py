@@ -11,7 +11,8 @@ from kb_build.symbols.api_names import NODE, SIDES, TYPES
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _MOST_WORDS = 5  # with more of them it is a question, in which the class is one word of many
 _MOST_FOUND = 3  # more members than these are not told apart

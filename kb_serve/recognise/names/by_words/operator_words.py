@@ -82,7 +82,7 @@ class OperatorWords:
 
     def _heaviest(self, paths: list[str]) -> list[str]:
         """Operators, those first that count most; of a module's with the same words the shorter one counts as much."""
-        weights = self._reader.weights(paths)
+        weights = self._reader.usage.weights(paths)
         alike: dict[tuple[frozenset[str], frozenset[str]], float] = {}
         for path in paths:
             key = self._words[path].own, self._words[path].module

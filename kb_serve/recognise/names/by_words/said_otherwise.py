@@ -16,7 +16,8 @@ from kb_serve.recognise.resolving.variables import variable_fit
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.names.by_words.operator_words import OperatorWords
     from kb_serve.recognise.recognition import MissingName
 
@@ -124,7 +125,7 @@ def _called(classes: Iterable[SymbolEntry], name: str, reader: BaseReader) -> li
     said = words(name)
     same = [entry for entry in entries if key(entry.label) == key(name)]
     ending = [entry for entry in entries if _ends_with(entry, said)]
-    return reader.heaviest(same) or (reader.heaviest(ending)[:1] if len(ending) <= _MANY else [])
+    return reader.usage.heaviest(same) or (reader.usage.heaviest(ending)[:1] if len(ending) <= _MANY else [])
 
 
 def _ends_with(entry: SymbolEntry, said: list[str]) -> bool:
@@ -144,7 +145,7 @@ def operators_on(owner: str, name: str, operators: OperatorWords, reader: BaseRe
         for path in operators.beginning(name)
         if variable_fit(path.removeprefix(OPERATORS).partition(".")[0], cls) >= _NAMED_AFTER
     ]
-    weights = reader.weights(fitting)
+    weights = reader.usage.weights(fitting)
 
     def far(path: str) -> tuple[bool, bool, float]:
         symbol = reader.symbol(path)

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.symbols.records import Symbol
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _OBJECT = "bpy.context.object"
 
@@ -72,7 +73,7 @@ def set_elsewhere(operator: Symbol, name: str, reader: BaseReader) -> str:
         if found := _member(place.cls, name, reader):
             when = "Set it on what it makes" if place.after else "Set it before"
             return f"{when}: `{place.expression}.{found}`."
-    taking = reader.operators_taking(name)
+    taking = reader.names.operators_taking(name)
     for part in (one.name for one in operator.parameters if operator_of_class(one.name) in taking):
         return f'Its part takes it: `{part}={{"{name}": …}}`.'
     further = [path for path in taking if path.startswith(f"{operator.path}_")]

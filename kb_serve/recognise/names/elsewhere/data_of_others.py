@@ -29,12 +29,14 @@ def data_of_others(missing: MissingName, reader: BaseReader) -> DataOfOthers | N
     """What only a few other types of objects have in their data by a name which an object's data lacks."""
     own = reader.object_type(missing.owner)
     entries = [
-        entry for entry in reader.by_name(missing.name) if own and entry.kind in {"property", "function"}
+        entry
+        for entry in reader.names.by_name(missing.name)
+        if own and entry.kind in {"property", "function"}
     ]
     types = {entry.path: kind for entry in entries if (kind := reader.object_type(entry.owner))}
     if own in types.values() or not 0 < len({*types.values()}) <= _MOST:
         return None
-    used = [entry.path for entry in reader.heaviest(entries) if entry.path in types]
+    used = [entry.path for entry in reader.usage.heaviest(entries) if entry.path in types]
     first = {types[path]: path for path in reversed(used)}
     kinds = sorted(first, key=lambda kind: used.index(first[kind]))
     owners = " or ".join(f"`{reader.object_data[kind]}`" for kind in kinds)

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.symbols.api_names import TYPES as T
 
 if TYPE_CHECKING:
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 ADDING = frozenset(
     {

@@ -11,7 +11,8 @@ from kb_serve.recognise.names.elsewhere.elements import ADDED_BY
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 BMESH = "bmesh.types.BMesh"
 BMESH_TYPES = "bmesh.types."

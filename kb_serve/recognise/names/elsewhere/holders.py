@@ -30,7 +30,8 @@ from kb_serve.recognise.names.elsewhere.held_collections import (
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _FEW = 3
 _VALUES = "mathutils."
@@ -117,7 +118,7 @@ def _let_go(held: Iterable[tuple[SymbolEntry, str]], verb: str, reader: BaseRead
 
 def _made(owner: str, reader: BaseReader) -> list[Elsewhere]:
     """How instances of a class are made, or else its elements."""
-    if creation := reader.creations([owner]).get(owner):
+    if creation := reader.makers.creations([owner]).get(owner):
         return [Elsewhere(creation.maker, f"One is made by `{creation.call}` (`{creation.maker}`).")]
     return _put(owner, "", reader)
 
@@ -131,7 +132,7 @@ def _put(owner: str, verb: str, reader: BaseReader) -> list[Elsewhere]:
         return list(map(_told, taken))
     own = [(collection, access) for collection, access in held if "." not in access]
     made = _done(own, _MAKERS, ADDED_BY, reader)
-    weights = reader.weights([one.path for one in made])
+    weights = reader.usage.weights([one.path for one in made])
     made.sort(key=lambda one: -weights.get(one.path, 0.0))
     return made if len(made) <= _FEW else []
 
@@ -169,7 +170,7 @@ def _removed(owner: str, verb: str, reader: BaseReader) -> list[Elsewhere]:
                 if takes(function, cls, reader)
             )
             others += filter(None, (REMOVED_BY.get(collection.path),))
-    weights = reader.weights([one.collection.path for one in found])
+    weights = reader.usage.weights([one.collection.path for one in found])
 
     def order(one: Held) -> tuple[bool, bool, float]:
         is_other = verb in _REMOVERS and one.function.name != verb
@@ -211,7 +212,7 @@ def _done(
 def _kinds_made(collection: SymbolEntry, reader: BaseReader) -> list[SymbolEntry]:
     """The functions of a collection that make elements of one kind each, the most used first."""
     members = reader.members(class_of(collection)).values() if collection.collection else ()
-    return reader.heaviest(one for one in members if one.name.startswith(_OF_A_KIND))[:_FEW]
+    return reader.usage.heaviest(one for one in members if one.name.startswith(_OF_A_KIND))[:_FEW]
 
 
 def _having(held: Iterable[tuple[SymbolEntry, str]], wanted: Sequence[str], reader: BaseReader) -> list[Held]:
@@ -221,7 +222,7 @@ def _having(held: Iterable[tuple[SymbolEntry, str]], wanted: Sequence[str], read
         for collection, access in held
         if (function := first_function(collection, wanted, reader))
     ]
-    weights = reader.weights([one.function.path for one in found])
+    weights = reader.usage.weights([one.function.path for one in found])
     found.sort(key=lambda one: -weights.get(one.function.path, 0.0))
     return found if len(found) <= _FEW else []
 

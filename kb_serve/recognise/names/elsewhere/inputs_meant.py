@@ -12,7 +12,8 @@ from kb_build.symbols.api_names import NODE, TYPES
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _ZONE_START, _ZONE_END = "Input", "Output"  # the last words of the classes of nodes that are made in pairs
 # What is made of nodes → the one of a new one's that says how it looks.

@@ -15,7 +15,8 @@ from kb_serve.recognise.names.elsewhere.layers import in_layers
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 OF_ELEMENTS = "The elements of"  # how notes begin on what they have
 _FEW = 3
@@ -71,7 +72,11 @@ def members_within(owner: str, name: str, reader: BaseReader, *, on_new: bool = 
                 found.setdefault(member, note)
     if not found and (beside := _beside(owner, name, reader)):
         return [beside]
-    return [Within(member, found[member]) for member in reader.heaviest(found)] if len(found) <= _FEW else []
+    return (
+        [Within(member, found[member]) for member in reader.usage.heaviest(found)]
+        if len(found) <= _FEW
+        else []
+    )
 
 
 def of_elements(collection: SymbolEntry, name: str, reader: BaseReader, before: str = "") -> Within | None:
@@ -107,9 +112,11 @@ def _of_data(owner: str, name: str, reader: BaseReader) -> Iterator[Within]:
     if not reader.descends(owner, OBJECT):
         return
     named = [
-        one for one in reader.by_name(name) if one.kind == "property" and reader.is_object_data(one.owner)
+        one
+        for one in reader.names.by_name(name)
+        if one.kind == "property" and reader.is_object_data(one.owner)
     ]
-    for member in reader.heaviest(named, _COUNTS)[:1]:
+    for member in reader.usage.heaviest(named, _COUNTS)[:1]:
         cls = member.owner.removeprefix(TYPES)
         yield Within(
             member, f"Its `.data` has it if that is of class `{cls}`: `.data.{name}` (`{member.path}`)."

@@ -10,7 +10,8 @@ from kb_build.symbols.paths import last_name
 from kb_serve.recognise.names.elsewhere.members_within import Within
 
 if TYPE_CHECKING:
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.lookups.records import SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _FEW = 2
 _KIND = "type"  # the property that tells of which kind a thing is
@@ -45,7 +46,7 @@ def of_another_kind(owner: str, name: str, reader: BaseReader) -> Within | None:
 
 def _choice(cls: str, base: str, choices: dict[str, str], reader: BaseReader) -> str:
     """The value of ``type`` for a class: that by which it is made, or that spells its name; "" for none."""
-    made = reader.creations([cls]).get(cls)
+    made = reader.makers.creations([cls]).get(cls)
     if made and made.choice in choices.values():
         return made.choice
     return choices.get(key(last_name(cls).removeprefix(last_name(base)).removesuffix(last_name(base))), "")

@@ -130,7 +130,7 @@ def explaining(written: str, items: Iterable[EnumItem], reader: BaseReader) -> l
     for ``LOOP``, as the loops of a mesh are said to be face corners.
     """
     name = written.lower()
-    entries = [entry for one in (name, f"{name}s") for entry in reader.by_name(one)]
+    entries = [entry for one in (name, f"{name}s") for entry in reader.names.by_name(one)]
     texts = [" ".join(terms(entry.line)) for entry in entries if entry.type == "collection"]
     labels = {item.identifier: terms(item.name) for item in items}
     found = [

@@ -29,8 +29,8 @@ def ids_in_urls(query: str, reader: BaseReader) -> Iterator[str]:
 
 def find_page(text: str, reader: BaseReader) -> str:
     """The slug of the page that a text names, with a suffix or without ``/index`` too; "" for none."""
-    if reader.is_page(text):
+    if reader.manual.is_page(text):
         return text
     slug = text.strip("/").removesuffix(".html").removesuffix(".rst").strip("/")
     candidates = (slug, f"{slug}/index") if "/" in text else (slug,)
-    return next((candidate for candidate in candidates if reader.is_page(candidate)), "")
+    return next((candidate for candidate in candidates if reader.manual.is_page(candidate)), "")

@@ -49,7 +49,9 @@ _SHARE = 0.6  # … in a question of many words, of which one fits some property
 
 def is_value(text: str, reader: BaseReader) -> bool:
     """Whether a text in capitals is an item of some enumeration."""
-    return text.isupper() and any(text == identifier for _, identifier, _ in reader.enum_owners(key(text)))
+    return text.isupper() and any(
+        text == identifier for _, identifier, _ in reader.names.enum_owners(key(text))
+    )
 
 
 def is_quoted_value(query: str, reader: BaseReader) -> bool:
@@ -94,7 +96,7 @@ class EnumValues:
         if not values and not classes:
             return
         for value in quoted:
-            for entry in self._reader.by_name(value):
+            for entry in self._reader.names.by_name(value):
                 if entry.kind == "class":
                     recognition.add(entry.path, 0.82, "quoted name")
         if not values:
@@ -123,7 +125,7 @@ class EnumValues:
             else {}
         )
         compared = [row for row in owners if not around or row[0] in fit]
-        weights = self._reader.weights([plain_path(owner) for owner, _ in compared])
+        weights = self._reader.usage.weights([plain_path(owner) for owner, _ in compared])
         compared.sort(key=lambda row: (-row[1], -fit.get(row[0], 0.0), -weights.get(plain_path(row[0]), 0.0)))
         return [*compared, *owners[len(compared) :]]
 
@@ -141,7 +143,7 @@ class EnumValues:
         wanted = list(values)[:_MOST_VALUES]
         held: dict[str, set[str]] = defaultdict(set)
         for value in wanted:
-            for owner, identifier, name in self._reader.enum_owners(key(value)):
+            for owner, identifier, name in self._reader.names.enum_owners(key(value)):
                 if value == identifier or (value == name and not self._is_class(value)):
                     held[owner].add(value)
         self._reader.entry.load(plain_path(owner) for owner in held)
@@ -160,7 +162,7 @@ class EnumValues:
         }
         of_called = [row for row in shares if called and row[0].startswith(called)]
         likeliest = of_called or [row for row in shares if row[1] == shares[0][1]]
-        weights = self._reader.weights([plain_path(owner) for owner, _ in likeliest])
+        weights = self._reader.usage.weights([plain_path(owner) for owner, _ in likeliest])
         likeliest.sort(
             key=lambda row: (-row[1], beyond.get(row[0], 0), -weights.get(plain_path(row[0]), 0.0))
         )
@@ -179,7 +181,7 @@ class EnumValues:
 
     def has_any(self, value: str) -> bool:
         """Whether any enumeration has an item that is spelled just so."""
-        return any(identifier == value for _, identifier, _ in self._reader.enum_owners(key(value)))
+        return any(identifier == value for _, identifier, _ in self._reader.names.enum_owners(key(value)))
 
     def has(self, owner: str, value: str) -> bool:
         """Whether an enumeration takes a value, somewhere."""
@@ -241,7 +243,7 @@ class EnumValues:
 
     def _is_class(self, value: str) -> bool:
         """Whether a label, ``Matrix``, is the name of a class: then it is hardly meant as an item."""
-        return any(entry.kind == "class" for entry in self._reader.by_name(value))
+        return any(entry.kind == "class" for entry in self._reader.names.by_name(value))
 
     def _fit_for_scripts(self, owner: str, around: set[str]) -> float:
         """How well an owner fits the words around; less, if it is an operator that an editor must be open for, or of

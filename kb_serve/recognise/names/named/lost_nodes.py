@@ -27,10 +27,13 @@ def lost_nodes(words: Sequence[str], reader: BaseReader) -> Iterator[str]:
         for length in range(min(place, _LONGEST), 0, -1) if is_named else ():
             said = "".join(one for one in words[place - length : place] if one not in _KIND_WORDS)
             names = [key(f"{family}{kind}{said}") for family in NODE_FAMILIES for kind in _KINDS]
-            if any(map(reader.by_key, names)):  # Blender has a node that is called so
+            if any(map(reader.names.by_key, names)):  # Blender has a node that is called so
                 break
             found = [
-                path for name in names for path in reader.removed_by_key(name) if reader.successors(path)
+                path
+                for name in names
+                for path in reader.history.removed_by_key(name)
+                if reader.history.successors(path)
             ]
             if found:
                 yield from dict.fromkeys(path for path in found if path.count(".") == _OF_CLASSES)

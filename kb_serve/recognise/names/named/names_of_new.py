@@ -54,7 +54,7 @@ class NamesOfNew:
         types = self._reader.symbol(f"{cls}.type")
         labels = {item.identifier: item.name for item in types.enum_items} if types else {}
         for maker in makers:
-            for call, choice in self._reader.calls_of(maker):
+            for call, choice in self._reader.makers.calls_of(maker):
                 named, label = _NAMED.search(call), labels.get(choice, "")
                 name = named[1] if named and holder == _MODIFIERS else _CALLED.get(choice, label)
                 if name:

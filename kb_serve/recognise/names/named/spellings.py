@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key
 from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT
 from kb_build.symbols.api_names import OPERATORS, TYPES
-from kb_serve.reader import PROPERTIES
 from kb_serve.recognise.message_patterns import is_message
 from kb_serve.recognise.names.named.addresses import find_page
 from kb_serve.recognise.names.named.enum_values import is_quoted_value, is_value
 from kb_serve.recognise.names.named.lost_nodes import lost_nodes
 from kb_serve.recognise.recognition import WHOLE_LABEL
+from kb_serve.recognise.resolving.chain_starts import PROPERTIES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -120,7 +120,7 @@ class Spellings:
             self._lost_within(text.lower().split(), recognition)
             if in_words:
                 self._lost_names(text.split(), recognition)
-        rows = self._reader.by_key(key(called))
+        rows = self._reader.names.by_key(key(called))
         if rows:
             self._spelled(called, rows, recognition)
         in_plain_words = " " in called and called.islower()
@@ -139,7 +139,7 @@ class Spellings:
         self._reader.entry.load(candidates)
         if path := next(filter(self._reader.entry, candidates), ""):
             recognition.add(path, 1.0, "exact")
-        elif taken_as := self._reader.still_works(TYPES + text):
+        elif taken_as := self._reader.history.still_works(TYPES + text):
             recognition.add_former_name(taken_as, 1.0)
             path = taken_as
         return bool(path)
@@ -159,7 +159,7 @@ class Spellings:
         is_long = text.count(" ") + 1 >= _LONG_LABEL
         strange = {identifier: _strangeness(text, identifier) for _, identifier in rows}
         typed = 0 in strange.values() or self._is_enum_item(text) or self._is_removed(text)
-        weights = self._reader.weights(strange) if len(rows) > 1 or not plain else {}
+        weights = self._reader.usage.weights(strange) if len(rows) > 1 or not plain else {}
         usual = "" if plain or dotted else self._usual_class(rows, weights)
         if usual:
             recognition.add(usual, _USUAL, "label")
@@ -197,11 +197,11 @@ class Spellings:
     def _labelled(self, text: str, recognition: Recognition) -> None:
         """Adds classes and operators with exactly this label; for modifiers, Blender's default name will do."""
         labels = (f"{text} Modifier", f"{text} Constraint", text)
-        self._reader.by_key.load(map(key, labels))
+        self._reader.names.by_key.load(map(key, labels))
         entries = [
             entry
             for label in labels
-            for form, identifier in self._reader.by_key(key(label))
+            for form, identifier in self._reader.names.by_key(key(label))
             if form == FORM_LABEL and (entry := self._reader.entry(identifier)) and entry.label == label
         ]
         named = [entry for entry in entries if entry.kind in {"class", "operator"}]
@@ -226,13 +226,13 @@ class Spellings:
             f"{word} {kind}" for kind in _KINDS.intersection(words) for word in words if word not in _KINDS
         ]
         for part in parts:
-            if not (paths := self._reader.labelled_classes.get(part.lower())):
+            if not (paths := self._reader.names.labelled_classes.get(part.lower())):
                 continue
             self._reader.entry.load(paths)
             classes = list(filter(None, map(self._reader.entry, paths)))
             is_typed = part.count(" ") + 1 >= _LONG_LABEL and part in typed
             sure = WHOLE_LABEL if is_typed else _LABEL_WITHIN
-            for rank, entry in enumerate(self._reader.heaviest(classes)[:_OF_A_LABEL]):
+            for rank, entry in enumerate(self._reader.usage.heaviest(classes)[:_OF_A_LABEL]):
                 recognition.add(entry.path, sure - 0.01 * rank, "label")
 
     def _lost_within(self, words: Sequence[str], recognition: Recognition) -> None:
@@ -268,14 +268,14 @@ class Spellings:
 
     def _lost(self, name: str) -> list[RemovedSymbol]:
         """What other versions alone have by a name of several words, as a path or as a member of some class."""
-        if self._reader.by_key(key(name)):
+        if self._reader.names.by_key(key(name)):
             return []
         return [*self._removed.spelled(name)] or self._lost_members(name)
 
     def _lost_members(self, name: str) -> list[RemovedSymbol]:
         """The member of that name, of which it is known what took its place, of the class that counts most."""
-        paths = [path for path in self._removed.paths_named(name) if self._reader.successors(path)]
-        weights = self._reader.weights({path.rpartition(".")[0] for path in paths})
+        paths = [path for path in self._removed.paths_named(name) if self._reader.history.successors(path)]
+        weights = self._reader.usage.weights({path.rpartition(".")[0] for path in paths})
         paths.sort(key=lambda path: -weights.get(path.rpartition(".")[0], 0.0))
         return [*filter(None, map(self._removed.of_path, paths[:1]))]
 
@@ -283,7 +283,7 @@ class Spellings:
         return "_" in text and is_value(text, self._reader)
 
     def _is_removed(self, text: str) -> bool:
-        return any(self._reader.removed(path) for path in (text, TYPES + text))
+        return any(self._reader.history.removed(path) for path in (text, TYPES + text))
 
     def _is_main_module(self, identifier: str) -> bool:
         """Whether an identifier is a module of ``bpy`` that scripts use: ``bpy.app.handlers``."""

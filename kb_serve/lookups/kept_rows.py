@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
 _Row = TypeVar("_Row")
+_Value = TypeVar("_Value")
 
 
 class KeptRows(Generic[_Row]):
@@ -39,3 +40,11 @@ class KeptRows(Generic[_Row]):
             self._kept[key] = rows.get(key, self._nothing)
         while len(self._kept) > max(self._most, len(wanted)):
             del self._kept[next(iter(self._kept))]
+
+
+def grouped(rows: Iterable[tuple[str, _Value]]) -> dict[str, tuple[_Value, ...]]:
+    """Key → its values, in the order of the rows."""
+    groups: dict[str, list[_Value]] = {}
+    for own, value in rows:
+        groups.setdefault(own, []).append(value)
+    return {own: tuple(values) for own, values in groups.items()}

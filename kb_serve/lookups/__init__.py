@@ -1,0 +1,1 @@
+"""Look-ups in a base's file, by what they are about."""
