@@ -77,13 +77,13 @@ def _judged(script: Script, taker: Taker, node: ast.expr) -> Iterator[Finding]:
         limit = high
     if limit is None:
         return
-    kept = f"{limit:g}" if taker.kind == "float" else f"{int(limit)}"
-    start, end = ("-∞" if low is None else f"{low:g}"), ("∞" if high is None else f"{high:g}")
+    kept = f"{limit:.7g}" if taker.kind == "float" else f"{int(limit)}"
+    start, end = ("-∞" if low is None else f"{low:.7g}"), ("∞" if high is None else f"{high:.7g}")
     span = script.span(node)
     literal = script.text(span).lstrip("+-").replace(".", "", 1).isdigit()
     yield Finding(
         RULE.id, "warning", span,
-        f"`{taker.path}` holds {start} … {end}: {value:g} becomes {kept}.{_advice(taker, value)}", taker.path, (),
+        f"`{taker.path}` holds {start} … {end}: {value:.7g} becomes {kept}.{_advice(taker, value)}", taker.path, (),
         Fix(f"Write {kept}", (Edit(span, kept),)) if literal and not _advice(taker, value) else None,
     )  # fmt: skip
 

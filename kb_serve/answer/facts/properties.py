@@ -91,8 +91,10 @@ def _range_facts(symbol: Symbol) -> Iterator[str]:
 
 
 def range_text(low: float | None, high: float | None, kind: str) -> str:
-    """The range of a number; ``kind`` is its type, as symbols have it: integers are written whole."""
-    digits = ".0f" if kind.startswith("int") else "g"
+    """The range of a number; ``kind`` is its type, as symbols have it: integers are written whole, floats with the
+    digits that Blender's have.
+    """
+    digits = ".0f" if kind.startswith("int") else ".7g"
     left = "−∞" if low is None else f"{low:{digits}}"
     right = "∞" if high is None else f"{high:{digits}}"
     return f"{left} … {right}"

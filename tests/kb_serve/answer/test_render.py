@@ -44,6 +44,8 @@ def test_a_property_in_one_look(kb: KnowledgeBase) -> None:
     [
         (Symbol("a", "property", type="float", unit="MASS", hard_min=0.0),
          ["type: `float`", "range: 0 … ∞", "unit: kg"]),
+        (Symbol("a", "property", type="float", hard_min=-1048574.0, hard_max=1.5707963705062866),
+         ["type: `float`", "range: -1048574 … 1.570796"]),
         (Symbol("a", "property", type="float", unit="ROTATION", hard_min=0, hard_max=1, soft_min=0, soft_max=1),
          ["type: `float`", "range: 0 … 1", "unit: radians"]),
         (Symbol("a", "property", type="int[2]", hard_min=-16777216, hard_max=16777216, soft_min=0, soft_max=1048576),
