@@ -173,13 +173,12 @@ class ApiHistory:
             return
         yield from (path for path, mask, _ in self.symbols() if mask >> number & 1)
 
-    def unknown_modules(self, version: str) -> tuple[str, ...]:
-        """The modules of which it is not known whether the version has them: its build was made without."""
-        number = self._number(version)
-        if number is None:
-            return ()
-        unknown = (path for path, hidden in self.unknown.items() if hidden >> number & 1)
-        return tuple(path for path in unknown if is_module(path))
+    def modules(self, version: str) -> tuple[str, ...]:
+        """The modules that a version has, and those of which that is not known: a build may be made without some."""
+        return tuple(path for path in self.masks if is_module(path) and self._may_have(path, version))
+
+    def _may_have(self, path: str, version: str) -> bool:
+        return self._number(version) is not None and self.exists(path, version) is not False
 
     def removed_from(self, version: str) -> Iterator[RemovedSpan]:
         """What other versions have and this one lacks: gone, or not there yet."""

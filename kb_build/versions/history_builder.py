@@ -75,15 +75,17 @@ def build_history(  # noqa: PLR0913 - all but the first are named
         raise KBBuildError(f"no Blender was available; {output} is unchanged. {reasons}")
     extracted = tuple(paths)
     kept: tuple[str, ...] = ()
+    doubted: dict[str, set[str]] = {}
     if old is not None:
         kept = _keep(old, paths)
+        doubted = _doubted(old, paths, kept)
         if not force:
             _refuse_poorer(old, {patch: paths[patch] for patch in extracted}, output)
     agreement: dict[str, Agreement] = {}
     if stubs is not None:
         agreement = _read_stubs(stubs, paths, progress)
     progress("Writing the history", 0, None)
-    history = merge_versions(paths)
+    history = merge_versions(paths, doubted)
     data = history.to_bytes()
     written = old != history
     if written:
@@ -181,6 +183,20 @@ def _keep(old: ApiHistory, paths: dict[str, set[str]]) -> tuple[str, ...]:
     for patch in kept:
         paths[patch] = set(old.paths(patch))
     return kept
+
+
+def _doubted(old: ApiHistory, paths: Mapping[str, set[str]], kept: Sequence[str]) -> dict[str, set[str]]:
+    """Kept version → the paths of which it is not known whether it has them: those of which the old file says so, and
+    those that other versions are only now known to have, so that an older extractor may have passed them over.
+    """
+    asked = [patch for patch in paths if patch not in kept and minor_of(patch) in old.versions]
+    now = set[str]().union(*(paths[patch] - set(old.paths(patch)) for patch in asked))
+    return {
+        patch: (now | {path for path, _, _ in old.symbols() if old.exists(path, patch) is None})
+        - paths[patch]
+        for patch in kept
+        if not is_from_stubs(patch)
+    }
 
 
 def _refuse_poorer(old: ApiHistory, extracted: Mapping[str, set[str]], output: Path) -> None:

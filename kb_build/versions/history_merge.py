@@ -13,13 +13,18 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 Masks = dict[str, int]
+# What Blender lists alone where it puts an enumeration together at run time: of languages that it was built with, say.
+_PLACEHOLDERS = frozenset({"DEFAULT", "DUMMY", "NONE", "None"})
 
 
-def merge_versions(paths: Mapping[str, Iterable[str]]) -> ApiHistory:
-    """The history of these full versions and their paths (see :func:`history.history_paths`).
+def merge_versions(
+    paths: Mapping[str, Iterable[str]], doubted: Mapping[str, Iterable[str]] | None = None
+) -> ApiHistory:
+    """The history of these full versions and their paths (see :func:`history.history_paths`); ``doubted`` are paths of
+    which it is not known whether a version has them.
 
     Of versions that are known from stubs (``2.79``), what no stubs have is unknown, and so are the items of an
-    enumeration that they do not list.
+    enumeration that they do not list. Where any version lists a placeholder alone, its items are unknown.
     """
     patches = tuple(sorted(paths, key=version_key))
     masks: defaultdict[str, int] = defaultdict(int)
@@ -32,6 +37,11 @@ def merge_versions(paths: Mapping[str, Iterable[str]]) -> ApiHistory:
     unknown = _unknown(plain, stubs)
     for path, hidden in _left_out(plain, stubs).items():
         unknown[path] |= hidden
+    for path, hidden in _unlisted(plain).items():
+        unknown[path] |= hidden
+    for version, doubtful in (doubted or {}).items():
+        for path in plain.keys() & doubtful:
+            unknown[path] |= 1 << patches.index(version) & ~plain[path]
     shared = _share(plain, unknown, stubs)
     unknown = {path: hidden for path, hidden in unknown.items() if hidden and path in plain}
     return ApiHistory(tuple(map(minor_of, patches)), patches, plain, shared, unknown)
@@ -60,6 +70,26 @@ def _left_out(masks: Masks, stubs: int) -> Masks:
         before = (masks[root] & -masks[root]) - 1 & ~stubs
         if before and not masks[root] & stubs:
             found |= {path: before for path in masks if path == root or path.startswith(f"{root}.")}
+    return found
+
+
+def _unlisted(masks: Masks) -> Masks:
+    """Path of an item → the versions that list a placeholder alone in its enumeration."""
+    of_enum: defaultdict[str, Masks] = defaultdict(dict)
+    for path, mask in masks.items():
+        above, mark, name = split_path(path)
+        if mark == ":":
+            of_enum[above][name] = mask
+    found: Masks = {}
+    for above, own in of_enum.items():
+        placeholders = listed = 0
+        for name, mask in own.items():
+            if name in _PLACEHOLDERS:
+                placeholders |= mask
+            else:
+                listed |= mask
+        if hidden := placeholders & ~listed:
+            found |= {f"{above}:{name}": hidden for name in own if name not in _PLACEHOLDERS}
     return found
 
 

@@ -130,5 +130,5 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
         similar_names=tuple(find_similar_names(symbols, history, version, {path for path, *_ in rows})),
         since=(*told_arrivals(symbols, history, version, table), *doubted),
         versions=history.versions,
-        unknown_modules=tuple(path for path in history.unknown_modules(version) if path not in known),
+        unknown_modules=tuple(path for path in history.modules(version) if path not in known),
     )

@@ -189,15 +189,34 @@ def test_a_module_that_a_build_lacks_as_a_whole_is_not_new_in_the_next(committed
     assert history.exists("aud.Device", "4.2") is None
     assert {span.path for span in history.removed_from("4.2")} == {"bpy.new"}
     assert [each.path for each in history.arrivals("4.3") if each.lacked] == ["bpy.new"]
-    assert history.unknown_modules("4.2") == ("aud",)
-    assert committed.unknown_modules("4.2") == ("aud",)
-    assert committed.unknown_modules("4.3") == ()
+    assert [set(history.modules(version)) for version in ("4.2", "9.9")] == [{"aud", "bpy"}, set()]
+    assert "aud" in committed.modules("4.2")
     assert not [span.path for span in committed.removed_from("4.2") if span.path.startswith("aud")]
 
 
 def test_a_module_that_stubs_tell_of_is_new_where_they_lack_it() -> None:
     history = merge_versions({"2.83": {"bpy"}, "2.90": {"bpy", "bl_math"}, "4.2.0": {"bpy", "bl_math"}})
     assert history.exists("bl_math", "2.83") is False
+
+
+def test_of_what_is_doubted_a_version_neither_has_nor_lacks_it() -> None:
+    doubted = {"bpy.types.A.old", "bpy.types.A.kind"}
+    history = merge_versions(PATHS, {"4.3.0": doubted})
+    assert [history.exists(path, "4.3") for path in ("bpy.types.A.old", "bpy.types.A.kind")] == [None, True]
+    again = ApiHistory.from_bytes(history.to_bytes())
+    assert again.exists("bpy.types.A.old", "4.3") is None
+
+
+def test_a_placeholder_alone_does_not_say_which_items_are_gone() -> None:
+    """A Blender that was built without languages lists DEFAULT for all of them."""
+    language, codec = "bpy.types.View.language", "bpy.types.View.codec"
+    both = {"bpy", language, codec, f"{language}:DEFAULT", f"{codec}:NONE", f"{codec}:PNG"}
+    history = merge_versions({
+        "3.4.1": {*both, f"{language}:de_DE", f"{codec}:GIF"},
+        "4.2.0": both,
+    })  # fmt: skip
+    assert history.exists(f"{language}:de_DE", "4.2") is None
+    assert [span.path for span in history.removed_from("4.2")] == [f"{codec}:GIF"]
 
 
 def test_what_stubs_left_out_while_blenders_had_it_they_do_not_call_gone() -> None:
