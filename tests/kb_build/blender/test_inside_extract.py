@@ -342,6 +342,19 @@ def test_context_members_say_where_they_are_none(symbols: dict[str, Symbol]) -> 
     assert not {WITHOUT_ACTIVE, WITHOUT_AREA}.intersection(flags["scene"])
 
 
+def test_members_of_the_contexts_class_are_there_in_every_editor(symbols: dict[str, Symbol]) -> None:
+    """Some of them editors have as well: the video sequencer its own tool settings."""
+    own = [
+        symbol
+        for symbol in symbols.values()
+        if symbol.owner == "bpy.types.Context" and symbol.kind == "property"
+    ]
+    assert {"tool_settings", "scene"} <= {symbol.name for symbol in own}
+    for symbol in own:
+        member = symbols[f"bpy.context.{symbol.name}"]
+        assert (member.same_as, member.editors, member.label) == (symbol.path, (), symbol.label)
+
+
 def test_context_members_have_types(symbols: dict[str, Symbol]) -> None:
     expected = {
         "active_bone": ("pointer", "EditBone"), "selected_objects": ("collection", "Object"),
@@ -539,6 +552,15 @@ def test_ways_and_modes_of_making_are_told_apart(symbols: dict[str, Symbol]) -> 
         ("NONE", ""),
         ("H264", "ImageFormatSettings.media_type='VIDEO'"),
     ]
+    brush = symbols["bpy.types.Brush.use_paint_image"].new_values
+    assert (brush[0].value, brush[0].by) == (True, 'bpy.data.brushes.new("Brush")')
+    assert all("mode=" in label for label in brush[1].made)
+
+
+def test_one_call_makes_one_value(symbols: dict[str, Symbol]) -> None:
+    for path, symbol in symbols.items():
+        calls = [(new.by, new.when) for new in symbol.new_values if new.by]
+        assert len(set(calls)) == len(calls), path
 
 
 def test_what_a_mode_gives_to_some_is_not_told_of_what_began_in_it(symbols: dict[str, Symbol]) -> None:

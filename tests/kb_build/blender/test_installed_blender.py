@@ -35,3 +35,11 @@ def test_all_of_it_is_described(extract: Extract) -> None:
 def test_addons_that_register_something_are_named(extract: Extract) -> None:
     assert len(extract.addon_names) > 10
     assert all(extract.addon_names.values())
+
+
+def test_an_editors_enumeration_lists_what_it_takes(extract: Extract) -> None:
+    """RNA lists the items of the 3D viewport's here, and the value that it has is none of them."""
+    pivot = next(one for one in extract.symbols if one.path == "bpy.types.SpaceImageEditor.pivot_point")
+    items = {item.identifier for item in pivot.enum_items}
+    assert items >= {"CENTER", "MEDIAN", "CURSOR", "INDIVIDUAL_ORIGINS"}
+    assert not {"BOUNDING_BOX_CENTER", "MEDIAN_POINT"} & items

@@ -125,11 +125,13 @@ def guess(name):
     return "", ""
 
 
-def write_global(write, screen):
-    """The properties of the class ``Context`` as members of ``bpy.context``."""
+def write_global(write):
+    """The properties of the class ``Context`` as members of ``bpy.context``. They are there whatever editor has others
+    of their names.
+    """
     for prop in bpy.types.Context.bl_rna.properties:
         name = prop.identifier
-        if name != "rna_type" and name not in screen:
+        if name != "rna_type":
             row = describe(prop)
             row["flags"] = [*row["flags"], f"same-as:bpy.types.Context.{name}"]
             if name in OF_AREAS and getattr(bpy.context, name) is None:
@@ -139,13 +141,13 @@ def write_global(write, screen):
 
 def write_all(write):
     """One record a member, with the editors that provide it."""
-    by_place = member_names()
-    places = {}
-    for place, names in by_place.items():
-        for name in names:
-            places.setdefault(name, []).append(place)
-    write_global(write, places)
     own = set(bpy.types.Context.bl_rna.properties.keys())
+    places = {}
+    for place, names in member_names().items():
+        for name in names:
+            if name not in own:
+                places.setdefault(name, []).append(place)
+    write_global(write)
     found, none = probe(tuple(places))
     for name in sorted(places):
         kind, target = found.get(name) or guess(name)
@@ -154,6 +156,5 @@ def write_all(write):
             flags.append(none[name])
         row = {"kind": "context", "type": kind, "target": target}
         write("symbol", path=f"bpy.context.{name}", owner="bpy.context", flags=flags, **row)
-        if name not in own:
-            also = [*flags, f"same-as:bpy.context.{name}"]
-            write("symbol", path=f"bpy.types.Context.{name}", owner="bpy.types.Context", flags=also, **row)
+        also = [*flags, f"same-as:bpy.context.{name}"]
+        write("symbol", path=f"bpy.types.Context.{name}", owner="bpy.types.Context", flags=also, **row)

@@ -79,6 +79,11 @@ class Field:
         self.is_unlisted = self.is_enum and len(self.static) < 2
         self.is_mode = self.is_enum and not self.is_flag and (cls, self.name) not in KINDS
 
+    def is_listed_wrongly(self, value):
+        """Whether an enumeration of which an instance has this value takes others than the items that RNA lists."""
+        is_one = self.is_enum and not self.is_flag and isinstance(value, str)
+        return self.is_unlisted or (is_one and value not in {"", *self.static})
+
 
 def computed_choices(rna):
     """(path, name, argument, other required arguments) of functions with a choice of which RNA lists one at most."""

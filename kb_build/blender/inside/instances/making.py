@@ -116,7 +116,9 @@ def block_makers():
             continue
         arguments = [item.identifier for item in function.parameters if not item.is_output]
         choice = "mode" if prop.identifier == "brushes" else "type"
-        for kind in argument_choices(collection, choice) or [None]:
+        # A mode is chosen rarely: what a call has that names none is what is usual.
+        plain_too = [None] if choice == "mode" else []
+        for kind in [*plain_too, *argument_choices(collection, choice)] or [None]:
             given = {"width": 8, "height": 8} if "width" in arguments else {}
             yield prop.identifier, collection, {choice: kind} if kind else given
 

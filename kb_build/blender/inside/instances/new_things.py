@@ -45,7 +45,10 @@ def data_blocks():
             block = collection.new("new", **given)
         except (TypeError, RuntimeError):
             continue
-        yield called(block), block, f"bpy.data.{name}.new()"
+        if "mode" in given:
+            yield f"{called(block)} with mode={given['mode']!r}", block
+        else:
+            yield called(block), block, f"bpy.data.{name}.new()"
         yield from present(block, "text_boxes")
         yield from present(block, "points")
         if name == "cameras":

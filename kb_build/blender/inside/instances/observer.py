@@ -180,7 +180,9 @@ class Observer:
             for field in self.unset(struct, before):
                 self.add(seen.setdefault(field.path, []), "", label)
             # What a mode would let it take is not known without all modes.
-            enums = [field for field in self.layout(struct).enums if vary or field.is_unlisted]
+            enums = self.layout(struct).enums
+            if not vary:
+                enums = [field for field in enums if field.is_listed_wrongly(before.get(field))]
             self.ask(struct, label + place, "", enums)
             self.ask_choices(struct, label + place)
         for struct, before in parts if vary else ():
@@ -444,13 +446,17 @@ class Observer:
             return []
         if not rows:
             return [] if all(same(row["value"], default) for row in start) else start
-        new = [
-            {"value": value, "made": list(labels) if row or len(rows) == 1 == len(labels) else []}
-            for row, (value, labels) in enumerate(rows)
-        ]
-        for row, (_, labels) in zip(new, rows, strict=True):
+        new = []
+        for row, (value, labels) in enumerate(rows):
+            known = {"value": value, "made": list(labels) if row or len(rows) == 1 == len(labels) else []}
             if call := self.maker(labels):
-                row["by"] = call
+                if any(other is not labels and not labels.keys().isdisjoint(other) for _, other in rows):
+                    # What the call makes has several of the class, with other values: it tells nothing of this one.
+                    if row:
+                        continue
+                else:
+                    known["by"] = call
+            new.append(known)
         return new + start
 
     def rank(self, row, own):

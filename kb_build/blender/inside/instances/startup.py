@@ -53,9 +53,8 @@ def crashes_on(observer, editors):
             for struct in observer.nearest(space):
                 for field in observer.layout(struct).fields:
                     send([struct.bl_rna.identifier, field.name])
-                    if not field.is_chosen:
-                        plain(getattr(struct, field.name, None))
-                    if field.is_unlisted:
+                    value = None if field.is_chosen else plain(getattr(struct, field.name, None))
+                    if field.is_listed_wrongly(value):
                         refused_value_items(struct, field.name, field.is_flag)
 
     has_ended, sent = sent_apart(work)
