@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from agents.protocol.measures.requests import Measures, Unmeasured
 from agents.protocol.rule import NotApplicable, Rule, RuleContext
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from agents.plan.scene import PlannedObject
     from agents.protocol.facts import ObjectFacts, Vector
@@ -29,6 +29,15 @@ _AXES = "XYZ"
 # What makes a mesh's faces out of what may come later: particles, instances.
 _COPIES = frozenset({"PARTICLE_INSTANCE", "NODES", "EXPLODE", "BUILD"})
 _SIMULATED = frozenset({"CLOTH", "SOFT_BODY", "FLUID_EFFECTOR", "FLUID_FLOW"})
+
+_SCALES = frozenset({"scale", "delta_scale"})
+_APPLY = "Apply the scale (bpy.ops.object.transform_apply, or write it into the mesh)."
+# What to do instead where the scale changes over time.
+_NOT_BELOW = "Let it stay above 0, and mirror the mesh itself."
+_NOT_ZERO = "Let it stay above 0 (0.001 is too small to be seen), or key whether it is shown (hide_render)."
+_NOT_SIMULATED = (
+    "Give the mesh its size and leave the scale at 1: a solver takes no body whose scale changes."
+)
 
 
 # Dimensions
@@ -67,22 +76,61 @@ def _wrong_dimensions(context: RuleContext, measures: Measures) -> Iterator[Find
         except Unmeasured as reason:
             yield R2.undecided((name,), reason)
             continue
-        for axis, size, wanted in zip(_AXES, sizes, planned.dimensions, strict=True):
-            most = max(tolerances.dimension_share * wanted, tolerances.contact)
-            if not size and wanted <= tolerances.sheet:
-                continue
-            if abs(size - wanted) > most:
-                yield R2.finding(
-                    (name,),
-                    f"{name!r} is {size:.3f} m along {axis}; the plan says {wanted:g} m.",
-                    fix=f"Scale the meshes of {name!r} by {wanted / size:.3f} along {axis} (and apply the scale), or "
-                    "fix the modifier that changes the size."
-                    if size
-                    else R2.fix,
-                    measured=size,
-                    tolerance=most,
-                    unit="m",
-                )
+        off = [
+            _Extent(axis, size, wanted, most)
+            for axis, size, wanted in zip(_AXES, sizes, planned.dimensions, strict=True)
+            if abs(size - wanted) > (most := max(tolerances.dimension_share * wanted, tolerances.contact))
+            and (size or wanted > tolerances.sheet)
+        ]
+        if off:
+            worst = max(off, key=lambda extent: abs(extent.size - extent.wanted) / extent.most)
+            yield R2.finding(
+                (name,),
+                f"{name!r} is {', '.join(extent.text for extent in off)}.",
+                fix=_resizing(context, name, off),
+                measured=worst.size,
+                tolerance=worst.most,
+                unit="m",
+            )
+
+
+class _Extent(NamedTuple):
+    """How far an object reaches along an axis, and should, give or take ``most``."""
+
+    axis: str
+    size: float
+    wanted: float
+    most: float
+
+    @property
+    def text(self) -> str:
+        """In words."""
+        return f"{self.size:.3f} m along {self.axis} (the plan says {self.wanted:g} m)"
+
+
+def _resizing(context: RuleContext, name: str, off: Sequence[_Extent]) -> str:
+    """What to do about extents that are not the planned ones."""
+    if not all(extent.size for extent in off):
+        return R2.fix
+    for mesh in context.structure.by_name[name].surfaces:
+        if scaled := _scaled_by(context, mesh):
+            return f"{scaled} Change it at the frame at which the size is measured, or change the meshes."
+    factors = [f"{extent.wanted / extent.size:.3f}" for extent in off]
+    if len(off) == len(_AXES) and len(set(factors)) == 1:
+        by = factors[0]
+    else:
+        by = ", ".join(f"{factor} along {extent.axis}" for factor, extent in zip(factors, off, strict=True))
+    return f"Scale the meshes of {name!r} by {by} (and apply the scale), or fix the modifier that changes the size."
+
+
+def _scaled_by(context: RuleContext, name: str) -> str:
+    """What changes the scale of an object over time, in a sentence; "" if nothing does."""
+    for one in (name, *context.structure.parents_of(name)):
+        item = context.structure.objects.get(one)
+        if item is not None and not _SCALES.isdisjoint({*item.keys, *item.driven}):
+            how = "set by a driver" if _SCALES.isdisjoint(item.keys) else "keyed"
+            return f"The scale of {one!r} is {how}: to apply it would not hold beyond this frame."
+    return ""
 
 
 # Placement
@@ -235,24 +283,28 @@ def _invalid_geometry(context: RuleContext, measures: Measures) -> Iterator[Find
 def _wrong_scale(context: RuleContext, mesh: ObjectFacts) -> Iterator[Finding]:
     matrix = np.array(mesh.matrix, dtype=float).reshape(4, 4)[:3, :3]
     sizes = np.linalg.norm(matrix, axis=0)
-    fix = "Apply the scale (bpy.ops.object.transform_apply, or write it into the mesh)."
+    scaled = _scaled_by(context, mesh.name)
+
+    def fix(instead: str) -> str:
+        return f"{scaled} {instead}" if scaled else _APPLY
+
     if any(value < 0 for value in mesh.scale):
         message = f"{mesh.name!r} has a negative scale, {_three(mesh.scale)}."
-        yield R4.finding((mesh.name,), message, fix=fix, measured=min(mesh.scale), tolerance=0.0)
+        yield R4.finding((mesh.name,), message, fix=fix(_NOT_BELOW), measured=min(mesh.scale), tolerance=0.0)
     elif np.linalg.det(matrix) < 0:
         parents = context.structure.parents_of(mesh.name)
         parent = next((name for name in parents if _mirrors(context, name)), None)
         by = f"by its parent {parent!r}" if parent else "by what it follows"
         objects = (mesh.name, *([parent] if parent else []))
-        yield R4.finding(objects, f"{mesh.name!r} is mirrored {by}.", fix=fix)
+        yield R4.finding(objects, f"{mesh.name!r} is mirrored {by}.", fix=fix(_NOT_BELOW))
     if not sizes.all():
-        yield R4.finding((mesh.name,), f"{mesh.name!r} has scale 0.", fix=fix, measured=0.0)
+        yield R4.finding((mesh.name,), f"{mesh.name!r} has scale 0.", fix=fix(_NOT_ZERO), measured=0.0)
     off = float(np.abs(sizes - 1).max())
     if _is_simulated(mesh) and off > context.tolerances.unit_scale:
         yield R4.finding(
             (mesh.name,),
             f"{mesh.name!r} is simulated, but its scale in the world is {_three(as_vector(sizes))}; solvers expect 1.",
-            fix=fix,
+            fix=fix(_NOT_SIMULATED),
             measured=off,
             tolerance=context.tolerances.unit_scale,
         )

@@ -145,7 +145,41 @@ def test_sizes_are_those_of_what_is_seen(session: LiveSession, script: str, heig
     build(session, script)
     wide = (0.6, 0.4, height) if script is GROWN else (9.0, 9.0, height)
     found = verified(session, "R2", plan(wide)).findings
-    assert [one.message.split(" along ")[1][0] for one in found] == ([] if script is GROWN else ["X", "Y"])
+    axes = [part[0] for one in found for part in one.message.split(" along ")[1:]]
+    assert axes == ([] if script is GROWN else ["X", "Y"])
+
+
+@pytest.mark.parametrize(
+    ("scale", "told", "remedy"),
+    [
+        ((2, 2, 2), "2.400 m along X (the plan says 1.2 m), 1.600 m along Y", "by 0.500 (and apply"),
+        (
+            (2, 1, 4),
+            "2.400 m along X (the plan says 1.2 m), 2.800 m along Z",
+            "by 0.500 along X, 0.250 along Z",
+        ),
+    ],
+)
+def test_a_wrong_size_is_one_finding_whatever_its_axes(
+    session: LiveSession, scale: tuple[float, ...], told: str, remedy: str
+) -> None:
+    build(session, f"{TABLE}root.scale = {scale}")
+    found = the_finding(verified(session, "R2", plan()))
+    assert told in found.message
+    assert remedy in found.fix
+    assert found.tolerance == pytest.approx(0.12 if scale[2] == 2 else 0.07), "that of the worst axis"
+
+
+def test_a_size_by_a_keyed_scale_is_not_to_be_applied(session: LiveSession) -> None:
+    keyed = """root.scale = (2, 2, 2)
+root.keyframe_insert("scale", frame=1)
+root.scale = (1, 1, 1)
+root.keyframe_insert("scale", frame=10)
+"""
+    build(session, TABLE + keyed)
+    found = the_finding(verified(session, "R2", plan()))
+    assert "The scale of 'Table root' is keyed" in found.fix
+    assert "and apply" not in found.fix
 
 
 # R3
@@ -280,6 +314,36 @@ def test_geometry_that_is_not_sound_is_found(
     assert found.objects == objects
     assert found.measured == (None if measured is None else pytest.approx(measured, abs=1e-6))
     assert why in found.message
+
+
+KEYED = """
+{one}.scale = {scale}
+{one}.keyframe_insert("scale", frame=1)
+{one}.scale = (1, 1, 1)
+{one}.keyframe_insert("scale", frame=10)
+scene.frame_set(1)
+"""
+
+
+@pytest.mark.parametrize(
+    ("change", "remedy"),
+    [
+        (KEYED.format(one="crate", scale=(0, 0, 0)), "key whether it is shown"),
+        (KEYED.format(one="root", scale=(-1, 1, 1)), "mirror the mesh itself"),
+        (KEYED.format(one="crate", scale=(2, 2, 2)) + "rigid(crate)", "leave the scale at 1"),
+        (
+            'scaled = crate.driver_add("scale", 0)\nscaled.driver.expression = "2"\nrigid(crate)\n'
+            "bpy.context.view_layer.update()",
+            "set by a driver",
+        ),
+        ("crate.scale = (2, 2, 2)\nrigid(crate)", "Apply the scale"),
+    ],
+)
+def test_a_scale_that_changes_is_not_to_be_applied(session: LiveSession, change: str, remedy: str) -> None:
+    build(session, CRATE + change)
+    (fix,) = {found.fix for found in verified(session, "R4").findings}
+    assert remedy in fix
+    assert ("Apply" in fix) == (remedy == "Apply the scale")
 
 
 # One copy of the crate for each particle, once it is born.
