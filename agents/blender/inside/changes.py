@@ -10,6 +10,7 @@ import tempfile
 import bpy
 from bpy.app.handlers import persistent
 
+from .blend.names import series
 from .digests.fingerprint import lasting_digests
 from .physics import caches
 
@@ -28,7 +29,7 @@ KINDS = (
     ),
     *("images", "textures", "particles", "armatures", "lattices", "shape_keys", "scenes", "worlds"),
 )
-LISTED = 40  # names of one kind in a report; the rest are counted
+LISTED = 40  # names of one kind in a report, or series of them; the rest are counted
 STALE, LOST = "older than their settings", "no longer baked"
 MOST_BLOCKS = 3000  # whose settings are compared; of more, those that Blender evaluated anew count as changed
 _ELSEWHERE = frozenset({"collection", "view layers"})  # parts of scenes that other data-blocks tell of
@@ -128,7 +129,7 @@ class ChangeWatch:
             layer.update()
 
     def report(self):
-        """{kind: {"added" | "removed" | "changed": names}}; {} if nothing is.
+        """{kind: {"added" | "removed" | "changed": names}}, long series of them as one; {} if nothing is.
 
         Modifiers are by ``Object[Modifier]``; ``caches`` has those that were ``reset``: they simulate again from their
         first frame; those that are ``no longer baked``; and the baked ones that are ``older than their settings``: they
@@ -261,4 +262,6 @@ def _entry(old, new, changed):
 
 
 def _shortened(names):
-    return [*names[:LISTED], f"… and {len(names) - LISTED} more"] if len(names) > LISTED else names
+    told = series(names)
+    left = sum(count for _, count in told[LISTED:])
+    return [text for text, _ in told[:LISTED]] + [f"… and {left} more"] * bool(left)

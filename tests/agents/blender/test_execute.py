@@ -52,6 +52,38 @@ def test_reports_changes_by_kind(session: LiveSession) -> None:
     assert gone.data["changed"]["modifiers"] == {"removed": ["Cube[Smooth]"]}
 
 
+MANY = """
+ball = bpy.data.meshes.new("Ball")
+for number in range(200):
+    obj = bpy.data.objects.new("Ball", ball)
+    bpy.context.collection.objects.link(obj)
+    obj.modifiers.new("Smooth", "SUBSURF")
+for row, column in [(1, 1), (1, 2), (10, 1)]:
+    bpy.context.collection.objects.link(bpy.data.objects.new(f"Tile_{row}_{column}", ball))
+"""
+
+
+def test_a_series_of_changes_is_told_as_one(session: LiveSession) -> None:
+    told = session.use(TOOL, code=MANY).data["changed"]
+    assert told["objects"] == {
+        "added": ["Ball … Ball.199 (200)", "Tile_10_1", "Tile_1_1", "Tile_1_2"],
+    }, "three are no series"
+    assert told["modifiers"] == {"added": ["Ball[Smooth] … Ball.199[Smooth] (200)"]}
+    moved = session.use(TOOL, code="for obj in bpy.data.objects:\n    if '.' in obj.name: obj.location.x = 2")
+    assert moved.data["changed"]["objects"] == {
+        "changed": ["Ball.001 (transform) … Ball.199 (transform) (199)"]
+    }
+
+
+def test_more_kinds_than_fit_are_counted_whole(session: LiveSession) -> None:
+    names = "[f'{kind}{one}.{n:03}' for kind in 'ABCDEFG' for one in 'abcdefg' for n in range(1, 6)]"
+    told = session.use(TOOL, code=f"for name in {names}:\n    bpy.data.meshes.new(name)")
+    added = told.data["changed"]["meshes"]["added"]
+    assert len(added) == 41
+    assert added[0] == "Aa.001 … Aa.005 (5)"
+    assert added[-1] == "… and 45 more", "nine series of five"
+
+
 def test_reading_changes_nothing(session: LiveSession) -> None:
     assert session.use(TOOL, code="len(bpy.data.objects)").data["changed"] == {}
 

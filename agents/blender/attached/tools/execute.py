@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from simworlds.sandbox.blender_process import WorkerReply
 
 _LISTED = 8
+_MANY = re.compile(r" … .* \((\d+)\)$|^… and (\d+) more$", re.DOTALL)
 _UNCHANGED = "**Nothing was done in the open Blender.**"
 _KEPT_OUT = "Do without that: the user's Blender is not to write files, open sockets or start anything."
 
@@ -183,9 +185,16 @@ def _comparable(rehearsal: _Rehearsal, changed: dict[str, Any]) -> object:
     if not rehearsal.of_part:
         return changed
     counts = {
-        kind: [len(entry.get(word, ())) for word in ("added", "removed")] for kind, entry in changed.items()
+        kind: [sum(map(_count, entry.get(word, ()))) for word in ("added", "removed")]
+        for kind, entry in changed.items()
     }
     return {kind: both for kind, both in counts.items() if any(both)}
+
+
+def _count(told: str) -> int:
+    """How many names an item of a list of changes stands for, which may be a series or the rest of them."""
+    many = _MANY.search(told)
+    return int(many[1] or many[2]) if many else 1
 
 
 def _called(

@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Names in messages: the nearest to one that does not exist, and long lists cut short."""
+"""Names in messages: the nearest to one that does not exist, series of them as one, and long lists cut short."""
 
 import difflib
+import re
+
+_SERIES = 4  # fewer names are told one by one
+_DIGITS = re.compile(r"\d+")
+_COPY = re.compile(r"\.\d{3,}(?=$|\[| \()")  # what Blender appends to the name of a copy: Brick, Brick.001, …
 
 
 def nearest(name, names, most=3):
@@ -22,3 +27,18 @@ def listed(words, most):
 def quoted(names, most):
     """As ``listed``, each name in quotes."""
     return listed(map(repr, names), most)
+
+
+def series(names):
+    """[(text, how many names it stands for)]: names that differ in numbers alone are one ``first … last (count)``."""
+    alike = {}
+    for name in names:
+        alike.setdefault(_DIGITS.sub("#", _COPY.sub("", name)), []).append(name)
+    told = []
+    for group in alike.values():
+        if len(group) < _SERIES:
+            told += [(name, 1) for name in group]
+        else:
+            ordered = sorted(group, key=lambda name: [int(number) for number in _DIGITS.findall(name)])
+            told.append((f"{ordered[0]} … {ordered[-1]} ({len(group)})", len(group)))
+    return told
