@@ -6,6 +6,7 @@ from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from agents.protocol.report.grouping import group_findings
 from agents.protocol.report.json_report import read_findings
 
 if TYPE_CHECKING:
@@ -13,7 +14,9 @@ if TYPE_CHECKING:
 
     from agents.loop.running.tool_client import ToolOutcome
     from agents.protocol.findings import Finding
+    from agents.protocol.report.grouping import FindingGroup
 
+_MAX_NAMED = 30  # objects of a line
 _SLACK = 0.01  # of what was measured before, by which it may be worse: measuring is not exact
 _LEAST = 1e-4
 _GROUNDED = "W1"  # its findings name what floats, and what of all that this touches lacks a contact
@@ -50,6 +53,19 @@ def told_since(known: Sequence[Finding], outcome: ToolOutcome) -> tuple[list[Fin
     """The findings of a call of the verifier that were not ``known``, and what models are told of it."""
     findings = new_findings(known, read_findings(outcome.data))
     return findings, format_new(findings) if known else outcome.text
+
+
+def format_known(findings: Iterable[Finding]) -> list[str]:
+    """Findings that a file has before it is edited, for models: those that say the same in one line."""
+    return [_known_line(group) for group in group_findings(findings)]
+
+
+def _known_line(group: FindingGroup) -> str:
+    rule, count = group.worst.rule, len(group.findings)
+    if count == 1:
+        return f"{rule} {', '.join(group.worst.objects)}: {group.worst.message}"
+    objects = group.objects(_MAX_NAMED).replace("\n", "; ")
+    return f"{rule}, {count} times: {group.message}{f' Objects: {objects}.' if objects else ''}"
 
 
 def format_new(findings: Sequence[Finding]) -> str:

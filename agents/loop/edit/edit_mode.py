@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from agents.loop.algorithm import ALL_AT_ONCE, build, finish
 from agents.loop.asset_library import prompt_with_assets
+from agents.loop.edit.baseline import format_known
 from agents.loop.edit.inputs import picture
 from agents.loop.edit.untouched import blocks, compared, unplanned
 from agents.loop.errors import Unusable
@@ -88,10 +89,9 @@ def _task(run: Run, plan: EditPlan, before: Blocks) -> RunTask:
     actors = tuple(actor.name for actor in plan.actors)
     bare = RunTask("", None, actors, edit=True, tagged=before.tagged)
     known = verify(run, "light", bare).findings
-    told = [f"{fault.rule} {', '.join(fault.objects)}: {fault.message}" for fault in known]
     return replace(
         bare,
-        plan_text=format_edit_plan(plan, run.options.prompt, told),
+        plan_text=format_edit_plan(plan, run.options.prompt, format_known(known)),
         known=known,
         declared=plan.actors,
         targets=tuple(dict.fromkeys(name for task in plan.tasks for name in task.targets)),

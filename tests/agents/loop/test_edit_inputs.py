@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from PIL import Image
 
-from agents.loop.edit.baseline import new_findings
+from agents.loop.edit.baseline import format_known, new_findings
 from agents.loop.edit.inputs import picture
 from agents.loop.errors import Unusable
 from agents.plan.edit import EditPlan, mentioned_in, unknown_targets
@@ -64,6 +64,20 @@ def test_other_objects_other_rules_and_what_is_now_certain_are_new() -> None:
     assert len(new_findings([depth(0.05)], [depth(0.05, rule="V1")])) == 1
     assert len(new_findings([depth(None, outcome="undecided")], [depth(0.05)])) == 1
     assert len(new_findings([depth(0.05, severity="soft")], [depth(0.05)])) == 1
+
+
+def test_faults_of_the_file_that_say_the_same_are_one_line() -> None:
+    alone = [
+        Finding("W1", "soft", (name,), f"{name!r} is not connected to the ground by declared contacts.")
+        for name in [f"Leaf_{number:02}" for number in range(1, 18)]
+    ]
+    other = Finding("V1", "hard", ("Mug", "Table"), "The gap between 'Mug' and 'Table' is 4 mm.")
+    assert format_known([*alone, other]) == [
+        "V1 Mug, Table: The gap between 'Mug' and 'Table' is 4 mm.",
+        "W1, 17 times: … is not connected to the ground by declared contacts. "
+        "Objects: Leaf_01 … Leaf_17 (17).",
+    ]
+    assert format_known([]) == []
 
 
 # Pictures
