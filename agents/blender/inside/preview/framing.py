@@ -17,6 +17,7 @@ CLOSE, LOOSE, WIDE = 1.06, 1.25, 1.7  # size of the picture in sizes of what is 
 _FOOT = 0.09  # of the picture's height: kept free for the scale bar
 _GROUND_TIMES, _SKY_TIMES, _FAR_TIMES = 1.7, 8.0, 6.0  # against what is framed
 _FLAT = 0.05
+_SPARE = 0.01  # of what is framed: so much more is in the picture
 _VAST_TIMES = 6.0  # against the middle one of all others: of what is larger, a whole picture shows no surface
 _PATCH, _LEAST_PATCH = 0.5, 0.02  # width of a patch, in diagonals of that other one, and in its own
 _UPRIGHT = 0.3  # how much of an axis is level, below which it says nothing of the turn
@@ -62,6 +63,12 @@ class BoundingBox:
         """Whether they have a point in common."""
         return all(
             self.low[axis] <= other.high[axis] and other.low[axis] <= self.high[axis] for axis in range(3)
+        )
+
+    def contains(self, other):
+        """Whether all of the other is inside."""
+        return all(
+            self.low[axis] <= other.low[axis] and other.high[axis] <= self.high[axis] for axis in range(3)
         )
 
     def holds(self, other):
@@ -115,6 +122,8 @@ def choose_framed(boxes, templates=()):
                 beyond.append(name)
                 continue
         core = box if core is None else BoundingBox.around((core, box))
+    # What is framed may have grown since by something that is no ground: then all of a ground may be in the picture.
+    beyond = [name for name in beyond if not core.grown(_SPARE * core.diagonal).contains(boxes[name])]
     return sorted(boxes.keys() - {*outside, *beyond}), sorted(beyond), outside
 
 

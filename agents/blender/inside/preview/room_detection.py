@@ -6,6 +6,7 @@ way out, is the room's *shell*, but for what moves, such as doors. A roof over m
 without walls. Lengths are those of the studio scene, in which what is framed is ``REACH`` across.
 """
 
+import itertools
 import math
 
 import bpy
@@ -33,6 +34,7 @@ _AROUND = [
     Vector((math.cos(turn), math.sin(turn), math.tan(math.radians(rise)))).normalized()
     for turn, rise in ((math.tau * at / 12 + 0.1, (5, 20, 12)[at % 3]) for at in range(12))
 ]
+_OPEN, _OPEN_BELOW_ROOF = 3, 4  # of these, ways out of a room
 _UP = [
     Vector(way).normalized()
     for way in ((0, 0.02, 1), (1, 0.1, 1.6), (-0.1, 1, 1.6), (-1, -0.1, 1.6), (0.1, -1, 1.6))
@@ -99,11 +101,18 @@ class _Rays:
 
         def meets(direction, size):
             hits = self._hits(place, direction)
+            if (
+                fronts_only and hits and not hits[0][2]
+            ):  # it looks out of a solid, beside which others may stand
+                return False
             return any(self._sizes[name] >= size and (front or not fronts_only) for name, _, front in hits)
 
+        # Rays that leave a solid may go on to another one beside it.
+        if fronts_only and sum(_leaves_solid(self._hits(place, way)) for way in _AROUND) > _OPEN:
+            return False
         if self._is_roofed(place):
-            return sum(meets(direction, _PART) for direction in _AROUND) >= 8
-        return sum(meets(direction, _WALL) for direction in _AROUND) >= 9
+            return sum(meets(direction, _PART) for direction in _AROUND) >= len(_AROUND) - _OPEN_BELOW_ROOF
+        return sum(meets(direction, _WALL) for direction in _AROUND) >= len(_AROUND) - _OPEN
 
     def is_low(self, place):
         """Whether something is right above."""
@@ -151,6 +160,12 @@ class _Rays:
             hits.append((obj.name, distance, normal.dot(direction) < 0))
             start = place + direction * _STEP
         return hits
+
+
+def _leaves_solid(hits):
+    """Whether a ray comes out of something that it has not gone into: then it begins in a solid, not in a room."""
+    within = itertools.accumulate(1 if front else -1 for _, _, front in hits)
+    return any(depth < 0 for depth in within)
 
 
 def _is_castable(piece):

@@ -64,6 +64,45 @@ def test_a_closed_room_is_opened_from_every_side(session: LiveSession, walls: st
     assert not any("Chest" in name for view in views.by_name.values() for name in view["cut_away"])
 
 
+STREET = """
+for name, place, size in (
+    ('Street', (0, -1.125, -.05), (4, 1.75, .1)), ('Gutter', (0, 0, -.085), (4, .5, .03)),
+    ('Curb', (0, .325, 0), (4, .15, .2)), ('Pavement', (0, 1.3, 0), (4, 1.8, .2)),
+):
+    box(name, place, size, (.6, .6, .6))
+import bmesh
+from mathutils import Matrix, Vector
+slabs, work = bpy.data.objects['Pavement'], bmesh.new()
+slabs.scale = (1, 1, 1)
+for low, high in [((-2, -.9, -.1), (2, .9, .096))] + [
+    ((x + .004, y + .004, .09), (x + .496, min(y + .496, .9), .1))
+    for x in (-2, -1.5, -1, -.5, 0, .5, 1, 1.5) for y in (-.9, -.4, .1, .6)
+]:
+    middle, size = (Vector(low) + Vector(high)) / 2, Vector(high) - Vector(low)
+    bmesh.ops.create_cube(work, size=1, matrix=Matrix.LocRotScale(middle, None, size))
+work.to_mesh(slabs.data)
+work.free()
+"""
+
+
+def test_slabs_side_by_side_are_no_room(session: LiveSession) -> None:
+    build(session, STREET)
+    assert not any(view["cut_away"] for view in Views(session, "scene").data["views"])
+
+
+def test_a_ground_that_is_framed_all_the_same_is_not_told_to_be_too_large(session: LiveSession) -> None:
+    low = "\nfor obj in bpy.data.objects: obj.location.z -= .2"
+    build(session, "box('Boat', (0, 0, 0), (.2, .1, .1), (.8, 0, 0))\n" + STREET)
+    told = "Larger than the pictures"
+    assert told in " ".join(Views(session, "scene").data["notes"]), "what the test is about"
+    build(
+        session,
+        f"{STREET}{low}\nbox('Hill', (0, 0, 0), (4.2, 5, 1), (.6, .6, .6))\n"
+        "box('Boat', (0, 0, 0), (.2, .1, .1), (.8, 0, 0))",
+    )
+    assert told not in " ".join(Views(session, "scene").data["notes"])
+
+
 @pytest.mark.parametrize(
     "moved",
     ["door.keyframe_insert('rotation_euler', frame=1)", "bpy.context.view_layer.objects.active = door\n"
