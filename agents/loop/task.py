@@ -29,8 +29,8 @@ class RunTask:
     of an edit, ``declared`` says by what, ``targets`` are what its plan changes, ``mentioned`` objects that it speaks
     of besides, ``old`` the objects that the file had, and ``unplanned`` finds what has changed that its plan does not
     ask for.
-    ``before`` is a still of the file as it was, at ``before_frame`` and of ``before_width`` pixels, and ``goal`` a
-    picture of what it is to look like.
+    ``before`` is a still of the file as it was, at ``before_frame``, of ``before_width`` pixels and of
+    ``before_samples`` a pixel, and ``goal`` a picture of what it is to look like.
     """
 
     plan_text: str
@@ -47,6 +47,7 @@ class RunTask:
     before: Picture | None = None
     before_frame: int | None = None
     before_width: int | None = None
+    before_samples: int | None = None
     goal: Picture | None = None
 
     def readout(self) -> tuple[dict[str, Any], dict[str, Any]]:

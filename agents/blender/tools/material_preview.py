@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from agents.blender.sheets.view_reply import LitView
     from agents.blender.supervisor import Supervisor
 
-_PANEL, _COLUMNS = 272, 4  # pixels a side of an object's still
+_PANEL, _LEAST_PANEL, _COLUMNS = 272, 64, 4  # pixels a side of an object's still
 _BACKGROUND: contact_sheet.Colour = (206, 209, 214)
 _MOST_OBJECTS, _MOST_FIRST, _MOST_FRAMES = 12, 200, 4
 _NAMED = 6
@@ -51,7 +51,7 @@ class MaterialArguments(Arguments):
         max_length=_MOST_FRAMES,
         description="Of the scene; objects: at the first.",
     )
-    width: int | SkipJsonSchema[None] = Field(default=None, ge=64, le=1536, description="Pixels.")
+    width: int | SkipJsonSchema[None] = Field(default=None, ge=64, le=1536, description="Pixels in all.")
     seconds: float = Field(
         default=150.0,
         ge=1,
@@ -78,7 +78,7 @@ def run(context: ToolContext, arguments: MaterialArguments, call: Call) -> Resul
         "old": arguments.old,
         "frames": list(dict.fromkeys(arguments.frames)),
         "folder": folder.workspace.for_blender(),
-        "size": [arguments.width, _PANEL],
+        "size": [arguments.width, _panel(arguments)],
         "seconds": arguments.seconds,
         "kept": kept.keys,
     }
@@ -107,6 +107,14 @@ def run(context: ToolContext, arguments: MaterialArguments, call: Call) -> Resul
     data["rendered"] = len(stills) - data["kept"]
     data["seconds"] = round(reply.seconds, 2)
     return Result(_text(shown, data), data, tuple(images))
+
+
+def _panel(arguments: MaterialArguments) -> int:
+    """Pixels a side of an object's still. Where only objects are shown, they share the width that was asked for."""
+    if arguments.width is None or arguments.show != "objects":
+        return _PANEL
+    columns = min(_COLUMNS, len(arguments.objects) or _COLUMNS)
+    return max(_LEAST_PANEL, arguments.width // columns)
 
 
 def _picture(blender: Supervisor, kept: KeptPictures, still: LitView | LitObject | LitPatch) -> Image.Image:

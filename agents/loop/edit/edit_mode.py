@@ -13,7 +13,7 @@ from agents.loop.edit.inputs import picture
 from agents.loop.edit.untouched import blocks, compared, unplanned
 from agents.loop.errors import Unusable
 from agents.loop.record.events import PlanMade, ReferenceKept
-from agents.loop.review.evidence import still, still_width
+from agents.loop.review.evidence import still, still_samples, still_width
 from agents.loop.review.verdicts import verify
 from agents.loop.running.position import START
 from agents.loop.running.run_tools import RENDER, RUNNER
@@ -65,11 +65,17 @@ def _opened(run: Run) -> Blocks:
 
 def _still_before(run: Run, render: RenderSettings) -> dict[str, Any]:
     """A still of the file as it is, and its frame; nothing if it cannot be rendered, for want of a camera say."""
-    outcome = run.tools.use(RUNNER, _FIRST, RENDER, still("before", None, still_width(render)))
+    samples = still_samples(run, render)
+    outcome = run.tools.use(RUNNER, _FIRST, RENDER, still("before", None, still_width(render), samples))
     if outcome.failed or not outcome.pictures:
         return {}
     data = outcome.data
-    return {"before": outcome.pictures[0], "before_frame": data["frame"], "before_width": data["width"]}
+    return {
+        "before": outcome.pictures[0],
+        "before_frame": data["frame"],
+        "before_width": data["width"],
+        "before_samples": samples,
+    }
 
 
 def _reference(run: Run) -> Picture | None:

@@ -21,8 +21,9 @@ if TYPE_CHECKING:
     from agents.plan.scene import RenderSettings
     from simworlds.llm.messages import Block
 
-WIDTH, SAMPLES = 960, 16  # of stills, at most
-_SECONDS = 60  # for each
+WIDTH, SAMPLES = 960, 64  # of stills, at most
+_LEAST_SAMPLES = 16  # that leave a denoised picture readable
+_SECONDS = 45  # for each: of what takes longer, fewer samples are taken
 _MOST_ACTORS, _MOST_PHASES, _MOST_SHEETS = 8, 24, 6  # of a motion sheet; sheets of a stage
 _MOST_SUBJECTS = 40
 _MOST_TARGETS = 200
@@ -62,7 +63,8 @@ def evidence(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
         shown.take(_MATERIALS, {"show": "scene", "frames": _telling_frames(task, run.motion)})
     elif stage == "light":
         for frame in _telling_frames(task, run.motion):
-            shown.take(RENDER, _again(still(f"look-{frame}", frame, _width(task))))
+            asked = still(f"look-{frame}", frame, _width(task), _samples(run, task))
+            shown.take(RENDER, _again(asked))
     shown.blocks += _coders_stills(run)
     focus, known = task.readout()
     shown.take(_STATE, focus or ({"first": first} if first else {}), known)
@@ -105,11 +107,28 @@ def still_width(render: RenderSettings) -> int:
     return min(WIDTH, render.resolution[0])
 
 
+def _samples(run: Run, task: RunTask) -> int:
+    return still_samples(run, task.plan.render) if task.plan is not None else min(SAMPLES, _LEAST_SAMPLES)
+
+
+def still_samples(run: Run, render: RenderSettings) -> int:
+    """As many as the film's, as far as a picture of so many is readable, and more would tell nothing.
+
+    They are those that the run began with: a session that resumes asks for the same stills.
+    """
+    return min(SAMPLES, max(_LEAST_SAMPLES, run.options.samples or render.samples))
+
+
 def still(
-    name: str, frame: int | None, width: int | None = None, seconds: float = _SECONDS
+    name: str,
+    frame: int | None,
+    width: int | None = None,
+    samples: int | None = None,
+    seconds: float = _SECONDS,
 ) -> dict[str, Any]:
     """The arguments of a still that is to be looked at, and may take so many seconds."""
-    asked = {"kind": "still", "name": name, "width": width or WIDTH, "samples": SAMPLES, "denoise": True}
+    asked = {"kind": "still", "name": name, "width": width or WIDTH, "denoise": True}
+    asked["samples"] = samples or min(SAMPLES, _LEAST_SAMPLES)
     return {**asked, "time_budget": seconds} | ({} if frame is None else {"frame": frame})
 
 
@@ -189,7 +208,10 @@ def edit_comparison(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
     if task.before is None and task.goal is None:
         return []
     outcome = run.tools.use(
-        RUNNER, stage, RENDER, _again(still("present", task.before_frame, task.before_width))
+        RUNNER,
+        stage,
+        RENDER,
+        _again(still("present", task.before_frame, task.before_width, task.before_samples)),
     )
     now = next((block for block in outcome.content if isinstance(block, Picture)), None)
     words = [Text(f"{RENDER}, the scene as it is now:"), *(b for b in outcome.content if isinstance(b, Text))]

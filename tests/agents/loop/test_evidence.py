@@ -11,6 +11,7 @@ from small_plan import small_plan
 
 from agents.loop.algorithm import stages_of
 from agents.loop.edit.comparison import photometric_loss
+from agents.loop.film.telling_frames import MeasuredMotion
 from agents.loop.options import Options
 from agents.loop.review.evidence import evidence, motion_sheets
 from agents.loop.running.tool_client import ToolOutcome
@@ -18,6 +19,7 @@ from agents.loop.task import RunTask
 from agents.plan.motion import MotionPhase
 from agents.plan.scene import ScenePlan
 from bench.blenderbench import photometric
+from simworlds.llm.messages import Picture
 
 if TYPE_CHECKING:
     from agents.loop.running.run import Run
@@ -76,11 +78,12 @@ class Asked:
     def __init__(self) -> None:
         self.options = Options(mode="make", prompt="A mug.")
         self.stills: tuple[()] = ()
+        self.motion = MeasuredMotion()
         self.tools = self
         self.calls: dict[str, dict[str, Any]] = {}
 
     def use(
-        self, _role: str, _stage: str, name: str, asked: dict[str, Any], known: dict[str, Any] | None
+        self, _role: str, _stage: str, name: str, asked: dict[str, Any], known: dict[str, Any] | None = None
     ) -> ToolOutcome:
         self.calls[name] = {**(known or {}), **asked}
         return ToolOutcome(())
@@ -101,3 +104,21 @@ def test_of_an_edit_motion_is_shown_in_its_stage_alone() -> None:
         asked = Asked()
         evidence(cast("Run", asked), cast("Stage", stage), RunTask("", actors=("Mug",), edit=True))
         assert ("blender_motion_sheet_preview" in asked.calls) == is_shown
+
+
+@pytest.mark.parametrize(
+    ("planned", "asked_for", "shown"), [(8, None, 16), (48, None, 48), (512, None, 64), (64, 32, 32)]
+)
+def test_stills_have_the_samples_of_the_film_as_far_as_they_tell(
+    planned: int, asked_for: int | None, shown: int
+) -> None:
+    plan = ScenePlan.model_validate(small_plan() | {"render": {"kind": "still", "samples": planned}})
+    asked = Asked()
+    asked.options = Options(mode="make", prompt="A mug.", samples=asked_for)
+    evidence(cast("Run", asked), "light", RunTask("", plan))
+    still = asked.calls["blender_render"]
+    assert (still["samples"], still["denoise"]) == (shown, True)
+    assert still["time_budget"] <= 60, "and take no longer for it"
+    edited = RunTask("", edit=True, goal=Picture(b"", "image/png"), before_samples=40)
+    evidence(cast("Run", asked), "light", edited)
+    assert asked.calls["blender_render"]["samples"] == 40, "as many as the file's had as it was"

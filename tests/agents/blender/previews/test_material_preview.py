@@ -136,6 +136,22 @@ def test_the_scene_is_shown_as_wide_as_asked_for(
     assert sizes == {shown}
 
 
+def test_objects_alone_share_the_width_that_is_asked_for(session: LiveSession) -> None:
+    build(session, "box('Mug'); box('Jug', (3, 0, 0))")
+
+    def wide(*objects: str, width: int) -> int:
+        found = session.use(material_preview.TOOL, show="objects", objects=list(objects), width=width)
+        return pictures(found)[0].width
+
+    margins = wide("Mug", width=400) - 400
+    assert 0 <= margins < 50
+    assert wide("Mug", width=300) == 300 + margins
+    assert wide("Mug", "Jug", width=300) == pytest.approx(300 + margins, abs=20), "beside each other"
+    assert wide("Mug", "Jug", width=64) == pytest.approx(2 * 64 + margins, abs=20), (
+        "no smaller than can be read"
+    )
+
+
 def test_what_one_call_has_no_room_for_is_named_with_the_reason(session: LiveSession) -> None:
     build(session, "for at in range(14): box(f'Post {at:02}', (2 * at, 0, 0))")
     text = session.use(material_preview.TOOL, show="objects").text
