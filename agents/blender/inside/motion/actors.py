@@ -12,6 +12,7 @@ from simworlds.sandbox.inside.refusal import Refused
 from ..blend.fluids import domain_of, is_empty_domain
 from ..blend.named_objects import objects_named
 from ..blend.protocol_tags import ROOT, object_collections
+from ..blend.visibility import comes_and_goes
 from ..geometry.evaluated_meshes import coordinates, transformed
 
 _EVALUATES_TO_MESH = {"CURVE", "SURFACE", "META", "FONT"}
@@ -32,6 +33,7 @@ class Actor:
         self.name, self.kind, self.objects = name, kind, objects
         self._most = None if most is None else max(1, most // len(objects))
         self._areas = None
+        self._comes_and_goes = all(map(comes_and_goes, objects))
         if any(_particles(obj) for obj in objects):
             self.measured = "particles"
         elif any(domain_of(obj) for obj in objects):
@@ -44,8 +46,11 @@ class Actor:
     def state_at(self, graph):
         """Its state in an evaluated dependency graph.
 
-        None if it does not exist at that frame (no particle born yet), or has coordinates that are not finite.
+        None if it does not exist at that frame (no particle born yet, or keys hide it from renders), or has coordinates
+        that are not finite.
         """
+        if self._comes_and_goes and all(obj.hide_render for obj in self.objects):
+            return None
         evaluated = [obj.evaluated_get(graph) for obj in self.objects]
         if self.measured == "particles":
             parts = [part for obj in evaluated for part in _particle_places(obj)]

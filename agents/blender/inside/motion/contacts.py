@@ -11,6 +11,7 @@ from mathutils.bvhtree import BVHTree
 
 from ..blend.fluids import domain_of, is_empty_domain
 from ..blend.protocol_tags import object_collections
+from ..blend.visibility import comes_and_goes
 from ..geometry.evaluated_meshes import coordinates, transformed
 from .actors import round_to
 
@@ -30,8 +31,14 @@ class TrackedSurface:
         self.slack = _slack(obj)
         self.exists = False
         self.matrix = None
+        self._comes_and_goes = comes_and_goes(obj)
         self._is_rigid = not obj.modifiers and getattr(obj.data, "shape_keys", None) is None
         self._places = self._tree = self._local = None
+
+    @property
+    def is_gone(self):
+        """Whether keys have taken it out of renders by now, and it is no collider either."""
+        return self._comes_and_goes and self.obj.hide_render and not _collides(self.obj)
 
     def update(self, graph):
         """Updates it from an evaluated dependency graph; its vertices only when they are needed."""
@@ -174,7 +181,7 @@ class Contacts:
                 continue
             small = math.dist(state.low, state.high)
             for name, other in others:
-                if not other.exists:
+                if not other.exists or other.is_gone:
                     continue
                 size = (
                     min(small, math.dist(other.low, other.high))
@@ -280,6 +287,9 @@ def _is_touchable(obj):
     """Whether an object has a mesh that is visible or takes part in collisions."""
     if obj.type != "MESH" or not obj.visible_get():
         return False
-    collides = obj.rigid_body is not None or any(modifier.type == "COLLISION" for modifier in obj.modifiers)
     domain = domain_of(obj)
-    return (collides or not obj.hide_render) and (domain is None or domain.domain_type == "LIQUID")
+    return (_collides(obj) or not obj.hide_render) and (domain is None or domain.domain_type == "LIQUID")
+
+
+def _collides(obj):
+    return obj.rigid_body is not None or any(modifier.type == "COLLISION" for modifier in obj.modifiers)

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Takes the open scene to frames without spoiling its simulations: what is not baked is stepped, never jumped."""
 
+import contextlib
+
 import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.simulation_zones import objects_with_zones
+from ..blend.visibility import as_rendered
 from ..physics import stepped_frames
 from ..physics.finite_check import DivergenceWatch
 
@@ -34,7 +37,8 @@ class FrameStepper:
     """Visits frames of a scene in order, and goes back to the frame before at the end of ``with``.
 
     No simulated frame is skipped: if a cache of the scene is not baked, every frame from its start, ``stepped_from``,
-    is visited, unless the caches still hold these frames; ``stepped_for`` names such caches.
+    is visited, unless the caches still hold these frames; ``stepped_for`` names such caches. Where nothing is
+    simulated, which hiding may change, objects that keys hide in the viewport are where renders show them.
     """
 
     def __init__(self, scene, first):
@@ -48,9 +52,13 @@ class FrameStepper:
 
     def __enter__(self):
         self._frame, self._subframe = self._scene.frame_current, self._scene.frame_subframe
+        self._shown = contextlib.ExitStack()
+        if self.stepped_from is None:
+            self._shown.enter_context(as_rendered(self._scene))
         return self
 
     def __exit__(self, *error):
+        self._shown.close()
         self._scene.frame_set(self._frame, subframe=self._subframe)
 
     def count(self, frames):

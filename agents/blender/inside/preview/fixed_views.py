@@ -12,6 +12,7 @@ from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.names import listed, nearest, quoted
 from ..blend.protocol_tags import GROUND, OBJECT, ROLE, ROOT, SYSTEM, object_collections
+from ..blend.visibility import as_rendered
 from ..physics import stepped_frames
 from ..physics.caches import unbaked
 from .framing import (
@@ -155,29 +156,33 @@ def _listed(names):
 def at_frame(scene, frame, notes):
     """Takes the scene to a frame and back; leaves it where it is if the jump would spoil a simulation."""
     here, part = scene.frame_current, scene.frame_subframe
-    if frame is None or frame == here:
-        bpy.context.view_layer.update()
-        yield
-        return
+    if frame is None:
+        frame = here
     held = stepped_frames.last_held(scene)
-    if (held is None or frame > held) and (waiting := [cache["label"] for cache in unbaked(scene)]):
+    waiting = [cache["label"] for cache in unbaked(scene)]
+    if frame != here and waiting and (held is None or frame > held):
         verb = "is" if len(waiting) == 1 else "are"
         notes.append(
             f"Shown at frame {here}, not {frame}: {listed(waiting, _NAMED)} {verb} not baked, and frames of unbaked "
             "simulations must not be skipped. Bake first, or step to the frame."
         )
-        yield
-        return
-    # Changing the frame puts animated objects back onto their keys, which undoes moves that are not keyed.
-    moved = [(obj, obj.matrix_basis.copy()) for obj in scene.objects if obj.animation_data]
-    scene.frame_set(frame)
-    try:
-        yield
-    finally:
-        scene.frame_set(here, subframe=part)
-        for obj, basis in moved:
-            if obj.matrix_basis != basis:
-                obj.matrix_basis = basis
+        frame = here
+    # What is hidden may be part of a simulation.
+    with contextlib.nullcontext() if waiting else as_rendered(scene):
+        if frame == here:
+            bpy.context.view_layer.update()
+            yield
+            return
+        # Changing the frame puts animated objects back onto their keys, which undoes moves that are not keyed.
+        moved = [(obj, obj.matrix_basis.copy()) for obj in scene.objects if obj.animation_data]
+        scene.frame_set(frame)
+        try:
+            yield
+        finally:
+            scene.frame_set(here, subframe=part)
+            for obj, basis in moved:
+                if obj.matrix_basis != basis:
+                    obj.matrix_basis = basis
 
 
 def copy_of(studio, kind, title, objects, notes):

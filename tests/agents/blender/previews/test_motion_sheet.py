@@ -454,6 +454,39 @@ def test_reports_what_cannot_be_seen(session: LiveSession) -> None:
     assert notes == ["Not in the pictures: 'Sledge': hidden from renders."]
 
 
+HIDDEN = """
+for frame, hide in ((1, False), (20, True), (40, False)):
+    {which}
+"""
+IN_VIEWPORT = HIDDEN.format(which="o.hide_viewport = hide; o.keyframe_insert('hide_viewport', frame=frame)")
+IN_RENDERS = HIDDEN.format(which="o.hide_render = hide; o.keyframe_insert('hide_render', frame=frame)")
+
+
+@pytest.mark.parametrize("frame", [1, 30])
+def test_what_keys_hide_in_the_viewport_is_where_renders_show_it(session: LiveSession, frame: int) -> None:
+    session.run(f"{SLIDE}{IN_VIEWPORT}s.frame_set({frame})")
+    before = session.run(STATE)
+    found = session.use(
+        TOOL, actors=["Sledge"], phases=[{"name": "slide", "start": 1, "end": 49}], frames=[1, 30]
+    )
+    slide = actor(found, "Sledge")["phases"][0]
+    assert slide["peak_speed"] == pytest.approx(5, rel=1e-3), "it stood still, and jumped"
+    assert slide["path_length"] == pytest.approx(10, abs=1e-3)
+    assert not any("Not in the pictures" in note for note in actor(found, "Sledge")["notes"])
+    assert session.run(STATE) == before
+    assert session.run("bpy.data.objects['Sledge'].hide_viewport") == (frame == 30)
+    session.run("bpy.context.scene.frame_set(25)")
+    assert session.run("bpy.data.objects['Sledge'].hide_viewport"), "its keys have their effect again"
+
+
+def test_what_keys_take_out_of_renders_is_not_there_meanwhile(session: LiveSession) -> None:
+    gone = IN_RENDERS.replace("(40, False)", "(60, True)")
+    session.run(SLIDE + IN_VIEWPORT + gone)
+    (slide,) = actor(session.use(TOOL, actors=["Sledge"], frames=[1, 60]), "Sledge")["phases"]
+    assert list(slide["there"]) == [1, 19]
+    assert slide["peak_speed"] == pytest.approx(5, rel=1e-3)
+
+
 def test_ignores_positions_that_are_not_finite(session: LiveSession) -> None:
     session.run(SLIDE + "o.animation_data_clear()\no.location.x = float('nan')")
     found = actor(session.use(TOOL, actors=["Sledge"], frames=[1, 10]), "Sledge")

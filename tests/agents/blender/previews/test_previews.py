@@ -57,6 +57,25 @@ def test_the_views_come_one_after_the_other_with_progress(session: LiveSession) 
 # What is shown
 
 
+@pytest.mark.parametrize("here", [1, 5])
+def test_what_keys_hide_in_the_viewport_is_shown_where_renders_show_it(
+    session: LiveSession, here: int
+) -> None:
+    build(
+        session,
+        "crate, scene = box('Crate'), bpy.context.scene; box('Post', (0, 0, 9))\n"
+        "for frame, x, hide in ((1, 0, False), (5, 40, True)):\n"
+        "    crate.location.x, crate.hide_viewport = x, hide\n"
+        "    crate.keyframe_insert('location', frame=frame)\n"
+        "    crate.keyframe_insert('hide_viewport', frame=frame)\n"
+        f"scene.frame_set({here})",
+    )
+    found = session.use(previews.SCENE_LAYOUT, frame=5)
+    assert "40.5" in found.text, "as far as the crate reaches by then"
+    assert "hidden" not in found.text
+    assert session.run("bpy.data.objects['Crate'].hide_viewport") == (here == 5)
+
+
 def test_each_view_shows_objects_at_their_size(session: LiveSession) -> None:
     build(session, "box('Crate', place=(40, -7, 3), size=(1, 2, 3))")
     views = Views(session, "mesh", "Crate")
