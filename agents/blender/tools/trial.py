@@ -35,6 +35,7 @@ _COLUMNS = 3
 _MOST_STRIPS, _NAMED = 4, 6
 _SPARE_SECONDS = 120.0  # for the frame that runs when the time is up, and for the pictures
 _MOST, _MOST_FIRST = 100, 200
+_STILL = 1e-3  # metres, and metres a second
 _SAME_VOLUME = 0.01  # in parts, by which it may change and still be told once
 _SHALLOWEST = 1e-4  # metres
 
@@ -219,11 +220,21 @@ def _lines_of(actor: _ActorTrial) -> Iterator[str]:
     volumes = [sample.volume for sample in actor.samples if sample.volume is not None]
     keeps_volume = bool(volumes) and max(volumes) - min(volumes) <= _SAME_VOLUME * max(volumes)
     parts += [f"{volumes[0]:.4g} m³"] if keeps_volume else []
+    parts += _moved(actor)
     yield f"- {actor.name}: {', '.join(parts) if parts else 'not there at any of these frames'}"
     if actor.most_alive is not None:
         yield from (f"  - frame {sample.frame}: {_swarm(sample)}" for sample in actor.samples)
         return
-    if actor.heights:
+    if actor.heights and _is_level(actor):
+        _, low, high, _ = actor.heights[0]
+        course = "; ".join(
+            f"{sample.frame}: {_vector(sample.middle)}"
+            + (f" {sample.speed:.2f}" if sample.speed is not None else "")
+            for sample in actor.samples
+            if sample.middle is not None
+        )
+        yield f"  - {low:.3f} to {high:.3f} m high all the time; frame: middle (m), speed (m/s): {course}"
+    elif actor.heights:
         course = "; ".join(
             f"{frame}: {low:.3f} {high:.3f}" + (f" {speed:.2f}" if speed is not None else "")
             for frame, low, high, speed in actor.heights
@@ -232,6 +243,24 @@ def _lines_of(actor: _ActorTrial) -> Iterator[str]:
     for sample in actor.samples:
         if found := ", ".join(_solid(sample, tells_volume=not keeps_volume)):
             yield f"  - frame {sample.frame}: {found}"
+
+
+def _moved(actor: _ActorTrial) -> list[str]:
+    """How far the middle of what is no swarm is at last from where it was at first."""
+    there = [(sample.frame, sample.middle) for sample in actor.samples if sample.middle is not None]
+    if actor.most_alive is not None or len(there) < 2:
+        return []
+    (_, first), (frame, last) = there[0], there[-1]
+    way = (last[0] - first[0], last[1] - first[1], last[2] - first[2])
+    if max(map(abs, way)) < _STILL and (not actor.peak_speed or actor.peak_speed[0] < _STILL):
+        return ["**has not moved**"]
+    return [f"moved by {_vector(way)} m at frame {frame}"]
+
+
+def _is_level(actor: _ActorTrial) -> bool:
+    """Whether it keeps its height, so that its places alone tell what it does."""
+    places = [sample.middle for sample in actor.samples if sample.middle is not None]
+    return len(places) > 1 and len({(f"{low:.3f}", f"{high:.3f}") for _, low, high, _ in actor.heights}) == 1
 
 
 def _line_of_others(others: _Others) -> str:

@@ -381,6 +381,31 @@ def test_a_flag_flies_in_gusts_and_hangs_between_them(blender: LiveSession) -> N
     assert max(past) == pytest.approx(3, abs=0.01), "what has no weight for wind falls straight down"
 
 
+@pytest.mark.parametrize(("damping", "speed"), [(0.0, 1.0), (0.9, 0.434)])
+@pytest.mark.parametrize("substeps", [5, 20])
+def test_a_body_gains_in_a_wind_what_its_sheet_says(
+    blender: LiveSession, damping: float, speed: float, substeps: int
+) -> None:
+    drift = f"""
+boat = box("Boat", (0.2, 0.1, 0.1), (0, 0, 0))
+bpy.ops.rigidbody.object_add()
+body, world = boat.rigid_body, scene.rigidbody_world
+body.mass, body.linear_damping, body.use_deactivation = 0.005, {damping}, False
+scene.gravity, world.substeps_per_frame = (0, 0, 0), {substeps}
+blower = bpy.data.objects.new("Blower", None)
+scene.collection.objects.link(blower)
+wind(blower, (1, 0, 0), 0.12)
+blower.field.flow = 0
+places = []
+for frame in range(1, {26 if not damping else 98}):
+    scene.frame_set(frame)
+    places.append(boat.matrix_world.translation.x)
+(places[-1] - places[-2]) * 24
+"""
+    assert "5 g at 24 fps take 0.12 for 1 m/s²" in sheet("wind")
+    assert tried(blender, "wind", drift) == pytest.approx(speed, rel=0.05)
+
+
 def test_particles_come_to_rest_on_a_floor_and_stay(blender: LiveSession) -> None:
     grains = tried(blender, "particles", PARTICLES)
     assert len(grains) == 40

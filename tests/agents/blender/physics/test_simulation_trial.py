@@ -56,6 +56,40 @@ def test_a_trial_tells_heights_speeds_pace_and_shows_a_strip(session: LiveSessio
     assert strip.png.startswith(b"\x89PNG")
 
 
+DRIFT = """
+scene = bpy.context.scene
+scene.gravity = (0, 0, 0)
+bpy.ops.mesh.primitive_cube_add(size=1)
+boat = bpy.context.object
+boat.name = "Boat"
+bpy.ops.rigidbody.object_add()
+boat.rigid_body.use_deactivation = False
+current = bpy.data.objects.new("Current", None)
+scene.collection.objects.link(current)
+current.location, current.rotation_euler.y = (-3, 0, 0), 1.5707963
+bpy.context.view_layer.update()
+with bpy.context.temp_override(object=current, active_object=current):
+    bpy.ops.object.forcefield_toggle()
+current.field.type, current.field.shape = "WIND", "PLANE"
+current.field.flow, current.field.strength = 0, 0
+"""
+
+
+def test_what_keeps_its_height_is_told_by_where_it_is(session: LiveSession) -> None:
+    session.run(DRIFT)
+    still = session.use(TOOL, frames=25, pictures=False)
+    assert "**has not moved**" in still.text
+    session.run("bpy.data.objects['Current'].field.strength = 48")
+    found = session.use(TOOL, frames=25, pictures=False)
+    assert "has not moved" not in found.text
+    way = float(found.text.partition("moved by (")[2].partition(",")[0])
+    assert way == pytest.approx(1, rel=0.1), "2 m/s² for a second"
+    assert (
+        "-0.500 to 0.500 m high all the time; frame: middle (m), speed (m/s): 1: (0.00, 0.00, 0.00); "
+        in found.text
+    )
+
+
 MANY = """
 scene = bpy.context.scene
 for number in range(20):
