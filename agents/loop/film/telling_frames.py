@@ -6,11 +6,11 @@ Even times alone show a short fall in a long film at rest.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from itertools import accumulate
+from itertools import accumulate, chain, zip_longest
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from agents.plan.motion import MotionPhase
 
@@ -24,10 +24,12 @@ _OF_MOTION = 0.8  # what is put between others goes by motion so far, the rest b
 class MeasuredMotion:
     """What motion sheets measured. ``peaks``: the highest speed of each phase, and the frame that shows it best.
 
+    ``meetings``: the frames at which an actor comes to touch something, the first of each of the two.
     ``speeds``: how fast everything was at a frame, where the fastest of each actor is 1.
     """
 
     peaks: tuple[tuple[float, int], ...] = ()
+    meetings: tuple[int, ...] = ()
     speeds: Mapping[int, float] = field(default_factory=dict[int, float])
 
     @classmethod
@@ -35,6 +37,7 @@ class MeasuredMotion:
         """From the data of motion sheets."""
         kinds = {(phase.name, phase.start, phase.end): phase.kind for phase in phases}
         peaks: list[tuple[float, int]] = []
+        meetings: set[int] = set()
         speeds: dict[int, float] = {}
         for actor in (actor for sheet in sheets for actor in sheet.get("actors", ())):
             for row in actor.get("phases", ()):
@@ -44,12 +47,25 @@ class MeasuredMotion:
                 if kinds.get((row["phase"], start, end)) in _GROWS:
                     frame = max(frame, start + (end - start) // 4)
                 peaks.append((row["peak_speed"], frame))
+            meetings.update(_meetings(actor))
             measured = zip(actor.get("frames", ()), actor.get("speeds", ()), strict=False)
             known = {frame: speed for frame, speed in measured if speed is not None}
             if fastest := max(known.values(), default=0.0):
                 for frame, speed in known.items():
                     speeds[frame] = speeds.get(frame, 0.0) + speed / fastest
-        return cls(tuple(sorted(peaks, reverse=True)), speeds)
+        return cls(tuple(sorted(peaks, reverse=True)), tuple(sorted(meetings)), speeds)
+
+
+def _meetings(actor: Mapping[str, Any]) -> Iterator[int]:
+    """When an actor first touches each of what it did not touch from the start."""
+    first: dict[str, int] = {}
+    for row in actor.get("phases", ()):
+        for contact in row.get("contacts", ()):
+            begun = min((begin for begin, _ in contact["frames"]), default=None)
+            if begun is not None:
+                first[contact["with"]] = min(begun, first.get(contact["with"], begun))
+    start = min((row["start"] for row in actor.get("phases", ())), default=0)
+    return (frame for frame in first.values() if frame > start)
 
 
 def telling_frames(
@@ -60,6 +76,9 @@ def telling_frames(
     apart = max(1.0, (last - first) / (_APART * count))
     fastest = motion.peaks[0][0] if motion.peaks else 0.0
     wanted = [frame for speed, frame in motion.peaks if speed >= _SLOW * fastest and fastest]
+    # By turns, the fastest first: a bump is slower than the way to it.
+    by_turns = chain.from_iterable(zip_longest(wanted, motion.meetings))
+    wanted = [frame for frame in by_turns if frame is not None]
     wanted = wanted or [(phase.start + phase.end) // 2 for phase in phases if phase.kind != "hold"]
     for frame in wanted:
         if (

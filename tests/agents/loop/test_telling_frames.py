@@ -50,6 +50,18 @@ def test_each_phase_has_a_frame_the_fastest_first() -> None:
     assert telling_frames(1, 200, 8, motion) == [1, 25, 45, 65, 85, 105, 125, 200]
 
 
+def test_a_bump_is_seen_though_the_way_from_it_is_faster() -> None:
+    drift, spin, on = phase("drift", 1, 50), phase("spin", 51, 80), phase("on", 81, 120)
+    measured = sheet([(drift, 0.38, 48), (spin, 0.379, 80), (on, 0.385, 114)], {})
+    rows = measured["actors"][0]["phases"]
+    rows[0]["contacts"] = [{"with": "Water", "frames": [[1, 50]]}]
+    rows[1]["contacts"] = [{"with": "Water", "frames": [[51, 80]]}, {"with": "Stone", "frames": [[54, 62]]}]
+    motion = MeasuredMotion.of([measured], [drift, spin, on])
+    assert motion.meetings == (54,), "water is touched from the start"
+    assert telling_frames(1, 120, 5, motion) == [1, 48, 54, 114, 120]
+    assert telling_frames(1, 120, 4, motion) == [1, 54, 80, 120]
+
+
 def test_what_was_not_measured_is_taken_from_the_plan() -> None:
     planned = [phase("fall", 40, 60), phase("wait", 60, 90, "hold")]
     assert telling_frames(1, 101, 3, MeasuredMotion(), planned) == [1, 50, 101]
