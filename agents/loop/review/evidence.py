@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 WIDTH, SAMPLES = 960, 64  # of stills, at most
 _LEAST_SAMPLES = 16  # that leave a denoised picture readable
-_SECONDS = 45  # for each: of what takes longer, fewer samples are taken
+_SECONDS = 60  # for each: of what takes longer, fewer samples are taken
 _MOST_ACTORS, _MOST_PHASES, _MOST_SHEETS = 8, 24, 6  # of a motion sheet; sheets of a stage
 _MOST_SUBJECTS = 40
 _MOST_TARGETS = 200

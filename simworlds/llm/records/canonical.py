@@ -7,9 +7,11 @@ What differs between two runs of the same conversation is left out or replaced, 
 3. dates and times of day become ``<time>``; UUIDs and numbers of eight or more hexadecimal digits ``<id>``;
 4. durations (``0.31 s``, ``12 ms``, ``2 minutes``) become ``<duration>``, amounts of data (``1.2 MB``) ``<size>``;
 5. spaces at the ends of lines go, line ends become newlines;
-6. pictures become ``<picture image/png>``, whatever they show;
-7. tool calls are named by their place in the conversation; the ids that the API gave them go;
-8. the model's own thinking goes; so do the model's name and ``max_tokens``.
+6. how fine a picture was rendered in the time that there was, and what was measured on its pixels, become
+   ``<samples>``, ``<film>`` and ``<looks>``; that time was short is left out;
+7. pictures become ``<picture image/png>``, whatever they show;
+8. tool calls are named by their place in the conversation; the ids that the API gave them go;
+9. the model's own thinking goes; so do the model's name and ``max_tokens``.
 
 The rest is compared as it is, except that numbers with a decimal point are taken for equal when they differ by no more
 than one percent or 0.001: physics is not the same to the last digit on every processor.
@@ -48,6 +50,17 @@ _RULES = (
     (re.compile(_AMOUNT + r"(?:bytes?|[kKMGT]i?B)\b"), "<size>"),
     (re.compile(r"\r\n?"), "\n"),
     (re.compile(r"[ \t]+$", re.MULTILINE), ""),
+    (re.compile(r"^- To keep the time budget: \d+ samples? instead of \d+\.\n?", re.MULTILINE), ""),
+    (re.compile(r"^The film(?:: \d+ frames, |'s samples: ).*$", re.MULTILINE), "<film>"),
+    (
+        re.compile(r"^(- Frame -?\d+)(?:: \d+ % black|, share of the picture).*$", re.MULTILINE),
+        r"\1: <looks>",
+    ),
+    (
+        re.compile(r"^(\d+ frames? rendered in .*\(camera .*, )\d+×\d+(, .*\)\.)$", re.MULTILINE),
+        r"\1<film>\2",
+    ),
+    (re.compile(r"(?<=, )\d+ samples?\b"), "<samples>"),
 )
 
 
@@ -94,7 +107,7 @@ def form_of(ask: Ask, folders: Mapping[str, str] | None = None) -> Form:
 
 
 def normal(text: str, folders: Mapping[str, str] | None = None) -> str:
-    """``text`` by the rules 1 to 5."""
+    """``text`` by the rules 1 to 6."""
     for folder in sorted(folders or {}, key=len, reverse=True):
         text = text.replace(folder.rstrip("/\\"), f"<{(folders or {})[folder]}>")
     text = _PATHS.sub(_path, text)

@@ -216,6 +216,52 @@ def test_the_last_digits_of_measures_may_differ():
         Recorded(record((ask(before), says("b")))).answer(ask(after.replace("3 faces", "4 faces")))
 
 
+STILL = """\
+Rendered frame 48 (camera 'Camera', 480×270, Cycles on the CPU, {samples} samples, denoised) in {seconds} s: /runs/a.png
+{hurry}- Frame 48: 0 % black, {burnt} % burnt out; brightness (0 to 1, as displayed) 0.2{burnt} at the 5th percentile.
+- Frame 48, share of the picture (mean brightness): Water 34 % (0.4{burnt}), Curb 22 % (0.55).
+- Frame 48 shows nothing of {unseen}.
+{frames} frames rendered in {seconds}.2 s, 7.45 s a frame (camera 'Camera', {size}, Cycles, {samples} samples).
+The film: 120 frames, {size}, {samples} samples. A frame takes about {seconds} s; 20 min are allowed.
+The film's samples: {samples} planned. Its size: {size}."""
+QUIET = {
+    "samples": 64,
+    "seconds": 21,
+    "hurry": "",
+    "burnt": 0,
+    "unseen": "Leaf",
+    "size": "480×270",
+    "frames": 120,
+}
+BUSY = QUIET | {
+    "samples": 9,
+    "seconds": 45,
+    "hurry": "- To keep the time budget: 9 samples instead of 64.\n",
+    "burnt": 1,
+    "size": "280×158",
+}
+
+
+def test_how_fine_a_busy_machine_renders_may_differ_and_what_it_shows_may_not():
+    def played(told):
+        return Recorded(record((ask(STILL.format(**QUIET)), says("b")))).answer(ask(STILL.format(**told)))
+
+    assert played(BUSY).text == "b"
+    for other in ({"unseen": "Stone"}, {"frames": 119}):
+        with pytest.raises(Drifted):
+            played(BUSY | other)
+
+
+def test_a_record_of_a_version_with_fewer_rules_plays_as_well():
+    rows = record((ask(STILL.format(**QUIET)), says("b")))
+    asked = next(row for row in rows if row["type"] == "model.asked")
+    asked["digest"] = "of other rules"
+    asked["parts"] = [f"old {part}" for part in asked["parts"]]
+    texts = {f"old {part}": text for part, text in asked["texts"].items()}
+    asked["texts"] = {part: text.replace("<samples>", "64 samples") for part, text in texts.items()}
+    assert Recorded(rows).answer(ask(STILL.format(**BUSY))).text == "b"
+
+
 def test_several_may_play_at_once():
     asks = [ask(f"number {number}", stage=f"s{number}") for number in range(20)]
     played = Recorded(record(*((one, says(f"to {one.stage}")) for one in asks)))
