@@ -225,7 +225,7 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
             deadline,
             files,
             journal,
-            RunTools(client, journal, files, position, deadline),
+            RunTools(client, journal, files, position, deadline, has_time=options.origin == "replay"),
             model,
             session.watcher.saying,
             position,

@@ -30,6 +30,7 @@ TRIAL = "blender_trial"
 # What a reviewer sees with, and nothing else; what the verifier says follows from the scene alone, too.
 LOOKS = frozenset(tool.name for tool in BY_NAME.values() if tool.shows_scene)
 _SHOWING = LOOKS | {VERIFY}
+_LIMITS, _LONGER = ("seconds", "timeout"), 4  # arguments of tools, and how many times as long a replay waits
 
 
 @dataclass
@@ -37,7 +38,8 @@ class RunTools:
     """What the roles, the verifier and the run itself call; two threads may do so at the same time.
 
     ``checkpoint``: the worker's that holds the scene as it is. ``is_leaving``: the run has stopped; calls are neither
-    journalled nor refused.
+    journalled nor refused. ``has_time``: limits of time that nobody has named are longer, as for a replay: what a tool
+    leaves out for want of time, it would leave out or not by how busy the machine is.
     """
 
     client: ToolClient
@@ -47,6 +49,7 @@ class RunTools:
     deadline: Deadline
     checkpoint: int | None = None
     is_leaving: bool = False
+    has_time: bool = False
     _seen: dict[str, ToolOutcome] = field(default_factory=dict[str, ToolOutcome])
     _numbers: Counter[tuple[str, str]] = field(default_factory=Counter[tuple[str, str]])
     _is_aligned: bool = False
@@ -66,7 +69,7 @@ class RunTools:
         ``known`` are arguments that follow from the run, which ``arguments`` may replace. ``moved``: folders whose
         files go to another once the call is over; the answer has the paths at which they stay.
         """
-        asked = {**(known or {}), **arguments}
+        asked = {**(_longer(name) if self.has_time else {}), **(known or {}), **arguments}
         if self.is_leaving:
             return self._called(name, asked)
         with self._lock:
@@ -169,3 +172,15 @@ def _renamed(block: Text | Picture, moved: Mapping[str, str] | None) -> Text | P
     for here, there in moved.items():
         text = text.replace(here, there)
     return Text(text)
+
+
+def _longer(name: str) -> dict[str, float]:
+    """The limits of time that a tool has by default, several times as long, as far as it takes them."""
+    fields = BY_NAME[name].arguments.model_fields if name in BY_NAME else {}
+    longer: dict[str, float] = {}
+    for limit in _LIMITS:
+        about = fields.get(limit)
+        if about is not None and isinstance(about.default, int | float):
+            most = (bound.le for bound in about.metadata if hasattr(bound, "le"))
+            longer[limit] = min(about.default * _LONGER, *most)
+    return longer

@@ -14,6 +14,8 @@ from agents.loop.errors import NoRun
 from agents.loop.film import allotted_time
 from agents.loop.options import RunLimits
 from agents.loop.record.journal import NAME, read_rows
+from agents.loop.running.run_tools import RunTools
+from agents.loop.running.tool_client import ToolOutcome
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -127,3 +129,39 @@ def test_a_record_without_answers_ends_in_words(mended: Played, alone: None, tmp
     played = sit(tmp_path / "run", **replay_options(record))
     assert played.ended.how == "failed"
     assert "The record has no further turn for the planner" in played.ended.why
+
+
+class _Called:
+    """Stands for a run's journal, its Blender and its deadline: what tools were called with."""
+
+    def __init__(self) -> None:
+        self.names = ["blender_material_preview", "blender_bake"]
+        self.calls: list[dict[str, Any]] = []
+        self.attempt = 1
+
+    def find(self, _event: object) -> None:
+        """Nothing was answered before."""
+
+    def note(self, _event: object) -> None: ...
+
+    def check(self) -> None: ...
+
+    def is_read_only(self, _name: str) -> bool:
+        return True
+
+    def call(self, _name: str, arguments: dict[str, Any], _asked: object) -> ToolOutcome:
+        self.calls.append(arguments)
+        return ToolOutcome(())
+
+
+def test_a_replay_leaves_nothing_out_since_the_machine_is_busy() -> None:
+    for has_time, seconds, timeout in ((False, None, None), (True, 600, 1600)):
+        called: Any = _Called()
+        tools = RunTools(called, called, called, called, called, has_time=has_time, _is_aligned=True)
+        tools.use("coder", "texture", "blender_material_preview", {"show": "scene"})
+        tools.use("coder", "texture", "blender_material_preview", {"show": "scene", "seconds": 20})
+        tools.use("coder", "texture", "blender_bake", {})
+        first, second, bake = called.calls
+        assert (first.get("seconds"), first.get("timeout")) == (seconds, timeout)
+        assert second["seconds"] == 20, "what was asked for is asked for again"
+        assert bake.get("timeout", 0) <= 3600, "the tool takes no more"
