@@ -51,7 +51,7 @@ class MaterialArguments(Arguments):
         max_length=_MOST_FRAMES,
         description="Of the scene; objects: at the first.",
     )
-    width: int | SkipJsonSchema[None] = Field(default=None, ge=64, le=1536, description="Pixels in all.")
+    width: int | SkipJsonSchema[None] = Field(default=None, ge=64, le=1536, description="Pixels.")
     seconds: float = Field(
         default=150.0,
         ge=1,
