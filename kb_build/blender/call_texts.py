@@ -76,7 +76,8 @@ def by_place_up_to(call: str, most: int) -> str:
     """A call's text with the mark before the arguments that are given by their names alone: all but the first few."""
     head, arguments = _parts(call)
     arguments = [text for text in arguments if text not in {"", "*"}]
-    if len(arguments) <= most or "/" in arguments or any(text.startswith("*") for text in arguments):
+    named = [text for text in arguments if not text.startswith("**")]
+    if len(named) <= most or "/" in named or any(text.startswith("*") for text in named):
         return call
     return f"{head}({', '.join([*arguments[:most], '*', *arguments[most:]])})"
 
@@ -104,9 +105,8 @@ def without_default(call: str, name: str) -> str:
 def all_optional(call: str) -> str:
     """A call's text in which no argument is required."""
     head, arguments = _parts(call)
-    return (
-        f"{head}({', '.join(text if '=' in text or text == '*' else f'{text}=None' for text in arguments)})"
-    )
+    shown = (text if "=" in text or text.startswith("*") else f"{text}=None" for text in arguments)
+    return f"{head}({', '.join(shown)})"
 
 
 def _parts(call: str) -> tuple[str, list[str]]:

@@ -375,23 +375,24 @@ def _split(text: str) -> tuple[list[str], str]:
     return calls, textwrap.dedent(rest)
 
 
-def _parameters(signature: str, fields: _Fields) -> tuple[Parameter, ...]:
-    """The call's arguments in its order, completed from the field list."""
+def _parameters(signature: str, fields: _Fields, *, is_certain: bool) -> tuple[Parameter, ...]:
+    """The call's arguments in its order, completed from the field list; ``is_certain``: there are no others."""
     parameters = {parameter.name: parameter for parameter in call_parameters(signature)}
     described = fields.texts | fields.types
     misnamed = [name for name in described if name not in parameters]
     undescribed = [name for name in parameters if name not in described]
-    if fields.arguments and len(misnamed) == len(undescribed) == 1:
-        # The docstring calls the one argument that is left otherwise than the signature does.
-        for known in (fields.texts, fields.types):
-            if misnamed[0] in known:
-                known[undescribed[0]] = known.pop(misnamed[0])
+    if fields.arguments and len(misnamed) == len(undescribed) and (is_certain or len(misnamed) == 1):
+        # The docstring calls the arguments that are left otherwise than the signature does.
+        for wrong, right in zip(misnamed, undescribed, strict=True):
+            for known in (fields.texts, fields.types):
+                if wrong in known:
+                    known[right] = known.pop(wrong)
     untyped = [name for name in fields.texts if name not in fields.types]
     undescribed = [name for name in fields.types if name not in fields.texts]
     if not parameters and len(untyped) == len(undescribed) == 1:
         # Of two names in the docstring alone, one is a slip: it describes the one, and has the type of the other.
         fields.types[untyped[0]] = fields.types.pop(undescribed[0])
-    for name in fields.texts | fields.types:
+    for name in fields.texts | fields.types if not is_certain else ():
         parameters.setdefault(name, Parameter(name=name))
     return tuple(
         _with_values(
@@ -429,20 +430,37 @@ def _bmesh_results(body: str) -> tuple[str, tuple[Parameter, ...]]:
     return head, tuple(map(_bmesh_result, call_parameters(f"({tail.strip()}")))
 
 
+def _form(call: str) -> tuple[object, ...] | None:
+    """What two texts of one call have in common: the arguments, how each is given, and which may be left out; None
+    where that is open.
+    """
+    definition = _definition(call)
+    if definition is None or definition.args.vararg or definition.args.kwarg:
+        return None
+    arguments = definition.args
+    listed = (arguments.posonlyargs, arguments.args, arguments.kwonlyargs)
+    names = tuple(tuple(argument.arg for argument in each if argument.arg != "self") for each in listed)
+    return *names, len(arguments.defaults), *(default is None for default in arguments.kw_defaults)
+
+
 @cache
-def parse_docstring(text: str, signature: str = "") -> Docstring:
+def parse_docstring(text: str, signature: str = "", *, is_python: bool = False) -> Docstring:
     """Reads a docstring as reST.
 
-    ``signature`` is what Python's own introspection found; a directive line in the docstring wins over it.
-    Malformed markup loses its meaning, never its text.
+    ``signature`` is what Python's own introspection found; a directive line in the docstring wins over it, which
+    knows the names that C functions give to their arguments. Of a function that is written in Python (``is_python``)
+    the signature is what it takes, whatever the docstring says. Malformed markup loses its meaning, never its text.
     """
     calls, body = _split(text)
+    taken = _form(signature) if is_python else None
+    if taken is not None and taken not in map(_form, calls):
+        calls = []
     body, slots = _bmesh_results(body) if text.startswith("BMeshOpFunc ") else (body, ())
     parser, settings = _parser()
     document = new_document("docstring", settings)
     with states_when_entered():
         parser.parse(_SPHINX.sub(rf"\1{_OWN}", body), document)
-    parsed = _overloaded(document.children, calls or [signature], slots)
+    parsed = _overloaded(document.children, calls or [signature], slots, is_certain=taken is not None)
     return _called_as_constructed(parsed)
 
 
@@ -468,11 +486,15 @@ def _called_as_constructed(parsed: Docstring) -> Docstring:
 
 
 def _overloaded(
-    children: Sequence[nodes.Node], calls: Sequence[str], slots: tuple[Parameter, ...] = ()
+    children: Sequence[nodes.Node],
+    calls: Sequence[str],
+    slots: tuple[Parameter, ...] = (),
+    *,
+    is_certain: bool = False,
 ) -> Docstring:
     """Reads what has the longest of these signatures; the description mentions the others."""
     call, *others = sorted(calls, key=len, reverse=True)
-    parsed = _interpreted(children, call, slots)
+    parsed = _interpreted(children, call, slots, is_certain=is_certain)
     if others:
         also = "Also " + ", ".join(f"`{other}`" for other in others) + "."
         parsed = replace(parsed, description=f"{parsed.description}\n\n{also}".strip())
@@ -496,7 +518,11 @@ def _unquoted(children: Sequence[nodes.Node]) -> Iterator[nodes.Node]:
 
 
 def _interpreted(
-    children: Sequence[nodes.Node], written: str, slots: tuple[Parameter, ...] = ()
+    children: Sequence[nodes.Node],
+    written: str,
+    slots: tuple[Parameter, ...] = (),
+    *,
+    is_certain: bool = False,
 ) -> Docstring:
     """Reads the body of a docstring, or of a method within it; ``slots`` are results known beforehand."""
     definition = _definition(written)
@@ -524,7 +550,7 @@ def _interpreted(
         description="\n\n".join(part for part in (_blocks(described), *fields.other) if part),
         signature=written,
         type=fields.own_type or (fields.return_type if not written.endswith(")") else ""),
-        parameters=_parameters(written, fields),
+        parameters=_parameters(written, fields, is_certain=is_certain),
         returns=returns,
         members=tuple(members),
     )

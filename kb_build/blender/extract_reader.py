@@ -57,6 +57,8 @@ _SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
 _ITEMS = "enum_items"  # the record of what instances listed
 # How ``inside/outside_rna/modules.py`` marks functions of modules written in Python.
 _OF_MODULE, _SELF = "of_module", "(self"
+# How it marks calls that Python itself reads, and those of which nothing is known.
+_CALL, _OF_PYTHON, _UNKNOWN = "call", "python", "unknown"
 _BOUND = re.compile(r"^\((?:self|cls)\b(?:, /)?(?:, )?")  # what a method gets from the dot before it
 _ROLE = re.compile(r":class:`~?([^`]+)`")  # which some of RNA's descriptions have
 _DOUBLE = re.compile(r"``([^`]+)``")
@@ -224,12 +226,13 @@ def _completed(parameters: Iterable[Parameter], known: Iterable[Parameter]) -> t
 def read_docstring(row: Mapping[str, Any]) -> Docstring:
     """What the docstring of a line of the extract says; it is kept."""
     docstring, signature = row.get("docstring", ""), row.get("signature", "")
+    is_python = row.get(_CALL) == _OF_PYTHON
     if row.get("kind") == "class":
         return constructed_by(parse_docstring(docstring, signature), last_name(row["path"]))
     if not row.get(_OF_MODULE) or not signature.startswith(_SELF):
-        return parse_docstring(docstring, _BOUND.sub("(", signature, count=1))
+        return parse_docstring(docstring, _BOUND.sub("(", signature, count=1), is_python=is_python)
     # A function of a module that panels call with themselves: it takes what is called so as any other argument.
-    parsed = parse_docstring(docstring, signature)
+    parsed = parse_docstring(docstring, signature, is_python=is_python)
     return replace(parsed, parameters=(Parameter("self", required=True), *parsed.parameters))
 
 
@@ -250,6 +253,7 @@ def _symbol(row: dict[str, Any]) -> Symbol:
     fields = symbol_fields(row)
     fields.pop("docstring", None)
     fields.pop(_OF_MODULE, None)
+    fields.pop(_CALL, None)
     made = fields.pop("returned", "")  # by undocumented functions, as their own code says
     fields["description"] = _without_roles(row.get("description", ""))
     path, kind = row["path"], row["kind"]

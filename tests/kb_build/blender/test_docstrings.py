@@ -356,3 +356,43 @@ def test_no_docstring_of_blender_loses_a_word(base: Path) -> None:
     ]
     # One docstring gives an argument's type under another name, which is left out.
     assert len({path for path, _ in lost}) <= 1, lost
+
+
+def test_a_function_written_in_python_takes_what_its_signature_says() -> None:
+    text = """.. method:: load(name, filepath, filetype, again=False)
+
+    Loads a preview.
+
+    :arg name: The name.
+    :arg filepath: The file.
+    :type filepath: str
+    :arg filetype: Its type.
+    :arg again: Once more.
+    """
+    call = "(name, path, path_type, again=False)"
+    parsed = parse_docstring(text, call, is_python=True)
+    assert parsed.signature == call
+    assert [(one.name, one.type, one.description, one.required) for one in parsed.parameters] == [
+        ("name", "", "The name.", True),
+        ("path", "str", "The file.", True),
+        ("path_type", "", "Its type.", True),
+        ("again", "", "Once more.", False),
+    ]
+    # What C calls its arguments only the docstring knows.
+    assert parse_docstring(text, "(object, /)").signature == "load(name, filepath, filetype, again=False)"
+
+
+@pytest.mark.parametrize(
+    ("call", "names"),
+    [
+        ("(*args, **kwargs)", ["name", "path"]),  # which tells nothing
+        ("(name, path)", ["name", "path"]),
+        ("(name, *, path)", ["name", "path"]),
+        ("(name)", ["name"]),
+    ],
+)
+def test_an_open_signature_leaves_the_call_to_the_docstring(call: str, names: list[str]) -> None:
+    text = ".. function:: f(name, path)\n\n:arg name: N.\n:arg path: P.\n"
+    parsed = parse_docstring(text, call, is_python=True)
+    assert [one.name for one in parsed.parameters] == names
+    assert parsed.signature == ("f(name, path)" if call in {"(*args, **kwargs)", "(name, path)"} else call)

@@ -33,7 +33,8 @@ TAKES_BY_PLACE = re.compile(r"takes (?:at most|exactly) (\d+) positional|takes (
 PROPERTIES = "bpy.props"
 NONE_BY_PLACE, ONE_BY_PLACE = "all args must be keywords", "expected one positional arg"
 NO_TEXT = "argument 1 must be str"
-LOOKUPS = ("file_path_map", "user_map")  # of bpy.data, which change nothing
+# Of bpy.data and the context, which change nothing when they are called.
+LOOKUPS = ("file_path_map", "user_map", "temp_override")
 NOBODYS = "no argument's name"
 NO_NAME = {NOBODYS: None}
 FILLERS = (0, "no name", object())
@@ -46,6 +47,7 @@ TOLD = re.compile(r"\.\. \w+:: *\w+\(([^)=\[\n]+)\)\s")  # without defaults
 AT_LEAST = re.compile(r"takes at least (\d+) arguments? ")
 CLASS = re.compile(r"\.\. class:: *\w+\([^)\n]")
 NAME = re.compile(r"(?:^|,)\s*(\w+)(?=\s*(?:[=,:]|$))")
+ANY_NAME = re.compile(r",?\s*\*\*\w+\s*$")
 
 
 def sounds():
@@ -63,10 +65,10 @@ def sounds():
 
 
 def custom_properties():
-    """A group of custom properties, and an array of them."""
+    """A group of custom properties, an array of them, and what tells how one is shown."""
     owner = bpy.context.window_manager  # which is in no file
-    owner["new"] = {"array": [1, 2]}
-    return owner["new"], owner["new"]["array"]
+    owner["new"], owner["shown"] = {"array": [1, 2]}, 1.0
+    return owner["new"], owner["new"]["array"], owner.id_properties_ui("shown")
 
 
 @functools.cache
@@ -128,6 +130,8 @@ def refusal(function, /, *given, **named):
         function(*given, **named)
     except (TypeError, ValueError) as error:
         return str(error)
+    except SystemError as error:  # of a function that gives a result beside its error
+        return str(error.__cause__ or "")
     except Exception:
         return ""
     return ""
@@ -144,7 +148,7 @@ def of_property(function):
 def lacks_marks(function):
     """Whether the documentation of a function names arguments, and does not say which are given by place or name."""
     call = CALL.search(inspect.getdoc(function) or "")
-    return call is not None and "*" not in call[1] and "/" not in call[1]
+    return call is not None and "*" not in ANY_NAME.sub("", call[1]) and "/" not in call[1]
 
 
 def of_names(function, said):
@@ -174,8 +178,9 @@ def of_nameless(function, said):
 
 
 def of_lookups(function):
-    """The flag of a function that only looks something up, and needs no arguments, whatever is documented."""
-    return [OPTIONAL] if function.__name__ in LOOKUPS and not refusal(function) else []
+    """The flags of a function that changes nothing, and needs no arguments, whatever is documented."""
+    is_free = function.__name__ in LOOKUPS and not refusal(function)
+    return [OPTIONAL, *of_places(function)] if is_free else []
 
 
 def of_places(function):

@@ -71,12 +71,48 @@ def belongs(value_name, owner, attribute):
     return root.lower() == owner.partition(".")[0] and rest.rpartition(".")[2] == attribute
 
 
+class Written:
+    """A default that a call's text has as it is written here."""
+
+    def __init__(self, text):
+        self.text = text
+
+    def __repr__(self):
+        return self.text
+
+
+def written(value):
+    """A default as Python writes it; what has no such text by its name, or as ``...``."""
+    if isinstance(value, (type, types.FunctionType, types.BuiltinFunctionType)):
+        return value.__name__
+    if isinstance(value, (set, frozenset)) and value:
+        return f"{{{', '.join(sorted(map(written, value)))}}}"
+    try:
+        ast.parse(repr(value), mode="eval")
+    except SyntaxError:
+        return "..."
+    return repr(value)
+
+
 def signature(value):
     """A call's text for what Python can inspect; empty for the rest, whose docstring carries it."""
     try:
-        return str(inspect.signature(value))
+        found = inspect.signature(value)
     except (TypeError, ValueError):
         return ""
+    taken = found.parameters.values()
+    with_texts = [
+        one if one.default is one.empty else one.replace(default=Written(written(one.default)))
+        for one in taken
+    ]
+    return str(found.replace(parameters=with_texts))
+
+
+def call_marks(function):
+    """What is known of a function's call besides its text: that it is what Python itself reads, or nothing at all."""
+    if isinstance(function, types.FunctionType):
+        return {"call": "python"}
+    return {} if signature(function) or inspect.getdoc(function) else {"call": "unknown"}
 
 
 def returned_class(function):
@@ -167,6 +203,7 @@ def write_member(write, owner, name, value, flags=()):
         signature="" if attribute else signature(function),
         returned="" if attribute or inspect.getdoc(function) else returned_display(function),
         flags=flags,
+        **({} if attribute else call_marks(function)),
     )
 
 
@@ -348,6 +385,7 @@ class Walk:
             returned="" if text else returned_display(value),
             parameters=parameters,
             flags=flags_of(value),
+            **call_marks(value),
             **({"of_module": True} if isinstance(value, types.FunctionType) else {}),
         )
 
