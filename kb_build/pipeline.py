@@ -273,7 +273,11 @@ def _extract(work: _Build) -> Extract:
     file = extract_api(runtime, home=work.home, again=work.options.force, progress=work.progress)
     from kb_build.blender.extract_reader import read_extract  # noqa: PLC0415 - loaded ahead
     from kb_build.summaries.functions import with_function_summaries  # noqa: PLC0415 - not when nothing changed
-    from kb_build.versions.disused import with_present_ways, without_effect  # noqa: PLC0415 - not when nothing changed
+    from kb_build.versions.disused import (  # noqa: PLC0415 - not when nothing changed
+        with_later_ways,
+        with_present_ways,
+        without_effect,
+    )
     from kb_build.versions.successors import load_successors  # noqa: PLC0415 - likewise
     from kb_build.versions.unlisted_values import with_values_until  # noqa: PLC0415 - likewise
 
@@ -310,6 +314,7 @@ def _extract(work: _Build) -> Extract:
     ]
     table, minor = load_successors(), minor_of(extract.version)
     symbols = with_present_ways(without_effect(extract.symbols, table, minor), table, minor)
+    symbols = with_later_ways(symbols, table, minor)
     symbols = with_values_until(symbols, table, minor)
     if work.options.summaries in {"shipped", "claude"}:
         symbols = with_function_summaries(symbols)

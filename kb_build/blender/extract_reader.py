@@ -288,7 +288,7 @@ def _symbol(row: dict[str, Any]) -> Symbol:
         fields["signature"] = last_name(path) + call[call.index("(") :] if "(" in call else ""
         fields["parameters"] = _completed(parsed.parameters, parameters)
         fields["returns"] = parsed.returns or ((Parameter("", type=made),) if made else ())
-    elif kind == "function":
+    elif kind == "function" and row.get(_CALL) != _UNKNOWN:
         fields["signature"] = call_text(last_name(path), parameters, marked=True)
     elif kind == "operator":
         fields["signature"] = call_text(path, parameters)

@@ -108,6 +108,10 @@ SHOWN_WHEN = "shown-when:"
 NAMES_ITEMS = "names-items"
 # The flag of a collection that has no elements on what is newly made.
 EMPTY = "empty-when-new"
+# The flag of a collection whose elements only a loop gives.
+ITERATED = "only-iterated"
+# The flag of what a module has as a name alone, as this Blender is built: it is None.
+STUB = "stub"
 # The flag of a pointer that is None on some new things of a kind and not on others.
 NONE_ON_SOME = "none-on-some"
 # The flags of a collection of ``bpy.data`` that is empty when Blender starts, and of a pointer that leads to something

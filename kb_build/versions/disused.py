@@ -1,7 +1,9 @@
-"""What a version lists without using it: settings of a render engine that is gone, operators for what is to come.
+"""What a version lists without using it: settings of a render engine that is gone, operators for what is to come,
+modules of which a build has the names alone.
 
 The table of successors tells of the settings: what took their place is in the release notes of a version before the one
-that lost them. Of an operator that makes what this version has no class for, it tells what that takes the place of.
+that lost them. Of an operator that makes what this version has no class for, it tells what that takes the place of; of
+a module, what takes its place later.
 """
 
 from __future__ import annotations
@@ -10,7 +12,7 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.records import BARE_DATA, Deprecation
+from kb_build.symbols.records import BARE_DATA, STUB, Deprecation
 from simworlds.releases import version_key
 
 if TYPE_CHECKING:
@@ -59,13 +61,32 @@ def with_present_ways(symbols: Iterable[Symbol], table: Iterable[Succession], ve
     ]
 
 
+def with_later_ways(symbols: Iterable[Symbol], table: Iterable[Succession], version: str) -> list[Symbol]:
+    """The symbols of a version (minor); modules of names alone say what takes their place in a version after it."""
+    symbols = list(symbols)
+    known = {symbol.path for symbol in symbols}
+    modules = {symbol.owner for symbol in symbols if STUB in symbol.flags}
+    later = {row.old: row for row in table if version_key(row.version or version) > version_key(version)}
+    told: list[Symbol] = []
+    for symbol in symbols:
+        module = next((one for one in (symbol.path, symbol.owner) if one in modules), "")
+        row = (later.get(symbol.path) or later.get(module)) if module else None
+        going = Deprecation(_instead(row, known), removal=row.version) if row else symbol.deprecation
+        told.append(replace(symbol, deprecation=going))
+    return told
+
+
+def _instead(row: Succession, known: set[str], *before: str) -> str:
+    """What a row says is to be used, of what is known, and where it says so."""
+    paths = [path for path in row.new if path in known]
+    use = f"{_USE}{', '.join(f'`{path}`' for path in paths)}." if paths else ""
+    how = "" if use and row.how.startswith(_USE) else row.how
+    return f"{' '.join(filter(None, (*before, use, how)))} ({row.source})"
+
+
 def _disuse(row: Succession, version: str, known: set[str]) -> Deprecation | None:
     """Since when what a row replaces is not used, where it is still there; None for all other rows."""
     said = _RELEASE_NOTES.match(row.source)
     if said is None or not version_key(said[1]) <= version_key(version) < version_key(row.version):
         return None
-    instead = [path for path in row.new if path in known]
-    use = f"{_USE}{', '.join(f'`{path}`' for path in instead)}." if instead else ""
-    how = "" if use and row.how.startswith(_USE) else row.how
-    note = " ".join(filter(None, (_NO_EFFECT, use, how)))
-    return Deprecation(f"{note} ({row.source})", said[1], row.version)
+    return Deprecation(_instead(row, known, _NO_EFFECT), said[1], row.version)

@@ -385,3 +385,31 @@ def test_what_the_dot_gives_to_a_method_is_none_of_its_arguments(extract: Extrac
     }
     assert set(taking.values()) == {"module"}
     assert "nodeitems_utils.draw_node_categories_menu" in taking  # a panel gives itself to it
+
+
+def test_of_a_call_that_nobody_describes_nothing_is_claimed(tmp_path: Path) -> None:
+    rows = [
+        symbol("m.unknown", "function", call="unknown"),
+        symbol("bpy.types.A.none", "function"),  # RNA lists no arguments
+    ]
+    unknown, none = read(tmp_path, *rows).symbols
+    assert (unknown.signature, unknown.has_empty_signature) == ("", False)
+    assert (none.signature, none.has_empty_signature) == ("none()", True)
+
+
+def test_python_itself_tells_what_a_method_written_in_it_takes(tmp_path: Path) -> None:
+    text = ".. method:: load(name, filepath)\n\n:arg name: It.\n:arg filepath: The file."
+    row = symbol("m.A.load", "function", docstring=text, signature="(self, name, path)")
+    sure, unsure = (read(tmp_path, {**row, **more}).symbols[0] for more in ({"call": "python"}, {}))
+    assert sure.signature == "load(name, path)"
+    assert [(one.name, one.description) for one in sure.parameters] == [
+        ("name", "It."),
+        ("path", "The file."),
+    ]
+    assert unsure.signature == "load(name, filepath)"
+
+
+def test_names_of_any_kind_stay_last_behind_those_that_may_be_left_out(tmp_path: Path) -> None:
+    text = ".. method:: f(window, area, **keywords)"
+    row = symbol("m.f", "function", docstring=text, flags=["all-optional", "by-place:0"])
+    assert read(tmp_path, row).symbols[0].signature == "f(*, window=None, area=None, **keywords)"

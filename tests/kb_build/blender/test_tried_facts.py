@@ -393,3 +393,24 @@ def test_a_decorator_has_the_words_of_where_it_stands(symbols: Mapping[str, Symb
     persistent = symbols["bpy.app.handlers.persistent"]
     assert "not to be removed when loading new files" in persistent.description
     assert persistent.type == ""
+
+
+@pytest.mark.parametrize(
+    ("function", "signature"),
+    [
+        ("bpy.types.IDPropertyUIManager.update_from", "update_from(ui_manager_source, /)"),
+        ("bpy_extras.io_utils.path_reference_copy", "path_reference_copy(copy_set, report=print)"),
+        ("freestyle.utils.pairwise", "pairwise(iterable, types={Stroke, StrokeVertexIterator})"),
+        ("freestyle.types.Noise.rand", ""),
+    ],
+)
+def test_a_call_is_as_blender_takes_it_and_written_as_python(
+    symbols: Mapping[str, Symbol], function: str, signature: str
+) -> None:
+    assert symbols[function].signature == signature
+
+
+def test_every_call_of_a_function_written_in_python_can_be_read(symbols: Mapping[str, Symbol]) -> None:
+    calls = {path: symbol.signature for path, symbol in symbols.items() if "(" in symbol.signature}
+    assert len(calls) > 5_000
+    assert not {path: call for path, call in calls.items() if "<" in call.partition("(")[2]}

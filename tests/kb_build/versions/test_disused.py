@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from kb_build.blender.tried_facts import add_fact
-from kb_build.symbols.records import BARE_DATA, Deprecation, Symbol
-from kb_build.versions.disused import with_present_ways, without_effect
+from kb_build.symbols.records import BARE_DATA, STUB, Deprecation, Symbol
+from kb_build.versions.disused import with_later_ways, with_present_ways, without_effect
 from kb_build.versions.successors import load_successors
 
 EEVEE = "bpy.types.SceneEEVEE"
@@ -73,3 +73,21 @@ def test_an_operator_that_makes_what_is_to_come_names_the_one_of_today() -> None
     assert with_present_ways([bare, today], table, "4.2")[0].flags == ("compared", f"{BARE_DATA}{today.path}")
     assert with_present_ways([bare], table, "4.2") == [bare]
     assert with_present_ways([bare, today], table, "4.3") == [bare, today]
+
+
+def test_a_module_of_names_alone_says_what_takes_its_place_later() -> None:
+    table = load_successors()
+    stubs = [Symbol(f"bgl.{name}", "data", "bgl", flags=(STUB,)) for name in ("glEnable", "glVertexAttrib1s")]
+    rest = [Symbol("bgl", "module"), Symbol("bgl.GL_BLEND", "data", "bgl")]
+    gpu = [Symbol(path, "module") for path in ("gpu", "gpu.state", "gpu.state.blend_set")]
+    found = {one.path: one.deprecation for one in with_later_ways([*stubs, *rest, *gpu], table, "4.2")}
+    assert [one for one in gpu if found.pop(one.path)] == []
+    assert {one.removal if one else "" for one in found.values()} == {"5.0"}
+    enable, blend = found["bgl.glEnable"], found["bgl.GL_BLEND"]
+    assert enable
+    assert enable.note.startswith("Use `gpu.state.blend_set`.")
+    assert blend
+    assert blend.note.startswith("Use `gpu`, `gpu.state`. The module bgl was removed")
+    # Where it is more than names, nothing is said, and nothing where it is gone.
+    assert with_later_ways([*rest, *gpu], table, "4.2") == [*rest, *gpu]
+    assert with_later_ways([*stubs, *rest], table, "5.0") == [*stubs, *rest]

@@ -29,6 +29,8 @@ WRITTEN = {}
 PRIVATE_BUT_DOCUMENTED = {"bpy.props._PropertyDeferred"}
 # What modules have that are struct sequences, as bpy.app.handlers, besides their fields.
 TUPLES_OWN = {*dir(tuple), "n_fields", "n_sequence_fields", "n_unnamed_fields"}
+# What a module that is written in C has as a name alone, as bgl where Blender is built without OpenGL.
+STUB, STUB_TEXT = "stub", "A name alone: it is `None` in this build of Blender."
 PLAIN = (bool, int, float, str, bytes, tuple, list, dict, set, frozenset)
 # What is written so in Python → its type.
 DISPLAYS = {
@@ -393,12 +395,15 @@ class Walk:
         """A constant or a list that a module holds; its documentation is on the descriptor, if anywhere."""
         described = getattr(type(module), attribute, None)
         documented = isinstance(described, ATTRIBUTE_TYPES)
+        is_stub = value is None and isinstance(module, types.ModuleType) and not hasattr(module, "__file__")
         self.write(
             "symbol",
             path=path,
             kind="data",
             owner=owner,
-            type=type(value).__name__,
+            type="" if is_stub else type(value).__name__,
+            description=STUB_TEXT if is_stub else "",
+            flags=[STUB] if is_stub else [],
             default=plain(value)
             if isinstance(value, (bool, int, float, str)) and not owner.startswith("bpy.app")
             else None,
