@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 from kb_build.flow.blender.facts import NARROWER
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.lineages import lineage
-from kb_build.symbols.lines import of_evaluated
-from kb_build.symbols.records import EVALUATED, HIDDEN
+from kb_build.symbols.lines import item_of, of_evaluated
+from kb_build.symbols.records import EVALUATED, HIDDEN, ITERATED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -31,7 +31,7 @@ _DETOURS = frozenset(
         "window_manager", "window", "screen", "workspace", "area", "region", "preferences", "space_data", "library",
         "original", "override_library", "asset_data", "asset", "rigidbody_world",
         "blend_data", "nla_tracks", "material_override", "preview", "id_root", "parent", "tool_settings",
-        "next_node", "prev_node", "texture", "active_strip", "compositing_node_group",
+        "next_node", "prev_node", "texture", "active_strip", "compositing_node_group", "region_popup",
     }
 )  # fmt: skip
 _DETOUR_COST = 6
@@ -59,6 +59,8 @@ _MATERIAL = "Material"
 _OF_WORLDS = frozenset({"ShaderNodeTexEnvironment", "ShaderNodeTexSky"})
 _ENDS_OF_GROUPS = frozenset({"NodeGroupInput", "NodeGroupOutput"})  # no material's own tree has them
 _NEVER_ACTIVE = frozenset({"Nodes"})  # none is, of those that scripts make
+# What several classes have, as modifiers that few objects take, and scripts set on a node: class → (node, property).
+_OF_NODES = {"ColorRamp": ("ShaderNodeValToRGB", "color_ramp")}
 # Objects have them too, but only chains of bones are moved by them.
 _OF_BONES = ("KinematicConstraint", "SplineIKConstraint")
 
@@ -66,7 +68,7 @@ _OF_BONES = ("KinematicConstraint", "SplineIKConstraint")
 @dataclass(frozen=True, slots=True)
 class _Step:
     """A property that leads to another class. ``container`` is the class of a collection, which may have ``active``;
-    ``evaluated``: only evaluated objects have it filled.
+    ``evaluated``: only evaluated objects have it filled; ``iterated``: only a loop gives its elements.
     """
 
     name: str
@@ -75,6 +77,7 @@ class _Step:
     many: bool = False
     container: str = ""
     evaluated: bool = False
+    iterated: bool = False
 
 
 @dataclass(slots=True)
@@ -121,7 +124,15 @@ def _graph(symbols: Iterable[Symbol], uses: Mapping[str, int], names: Mapping[st
             many = symbol.type == "collection"
             target = NARROWER.get(symbol.path, symbol.target)
             graph.edges[owner].append(
-                _Step(symbol.name, target, cost, many, symbol.collection, EVALUATED in symbol.flags)
+                _Step(
+                    symbol.name,
+                    target,
+                    cost,
+                    many,
+                    symbol.collection,
+                    evaluated=EVALUATED in symbol.flags,
+                    iterated=ITERATED in symbol.flags,
+                )
             )
             if symbol.path == f"{TYPES}Object.data":
                 graph.edges[owner] += [_Step(symbol.name, name, cost) for name in _OBJECT_DATA]
@@ -189,6 +200,9 @@ def _place(expressions: dict[str, str], graph: _Graph, places: Mapping[str, str]
         expressions[cls] = f"{expressions.get(holder, holder.lower())}.node_tree.nodes{_key(cls, graph)}"
     for cls in _ENDS_OF_GROUPS & expressions.keys():
         expressions[cls] = f"bpy.data.node_groups[0].nodes{_key(cls, graph)}"
+    for cls, (node, name) in _OF_NODES.items():
+        if cls in expressions and node in expressions:
+            _move(expressions, expressions[cls], f"{expressions[node]}.{name}")
     # A socket, on a node that has one like it: RNA's way leads to any node. Those of no node have no way.
     for cls in graph.below(_SOCKET):
         known = [
@@ -199,6 +213,13 @@ def _place(expressions: dict[str, str], graph: _Graph, places: Mapping[str, str]
             expressions[cls] = f"{expressions[owner]}.{subscript}"
         elif not graph.derived.get(cls) and graph.sockets:
             expressions.pop(cls, None)
+
+
+def _move(expressions: dict[str, str], before: str, after: str) -> None:
+    """Gives another way to what one way leads to, and to all that is reached through it."""
+    for cls, expression in expressions.items():
+        if expression == before or expression.startswith((f"{before}.", f"{before}[")):
+            expressions[cls] = after + expression.removeprefix(before)
 
 
 def _distance(node: str, subscript: str, graph: _Graph, places: Mapping[str, str]) -> tuple[bool, ...]:
@@ -219,12 +240,14 @@ def reached_expressions(
 
     ``ClothSettings`` → ``bpy.context.object.modifiers["Cloth"].settings``: the names in brackets are those that
     Blender itself gives (``names``, by class), to be replaced by the scene's own; where it gives none, there is an
-    index. ``uses`` tells how often Blender's own scripts use a property: of several ways the one is taken that they
-    take. ``places``: class of nodes → class of the data-block in whose tree such a node stands from the start.
+    index. What only a loop gives is what that calls it: ``object_instance``. ``uses`` tells how often Blender's own
+    scripts use a property: of several ways the one is taken that they take. ``places``: class of nodes → class of the
+    data-block in whose tree such a node stands from the start.
     """
     graph = _graph(symbols, uses or {}, names or {})
     expressions: dict[str, str] = {}
     containers: dict[str, tuple[float, str]] = {}
+    items: dict[str, str] = {}
     queue: list[tuple[float, int, str, str]] = []
     order = 0
 
@@ -246,6 +269,9 @@ def reached_expressions(
             continue
         expressions[cls] = expression
         for step in _steps(cls, graph):
+            if step.iterated:
+                items[step.target] = item_of(step.name)
+                continue
             here = f"{of_evaluated(expression) if step.evaluated else expression}.{step.name}"
             reached = cost + step.cost + (1 if step.many else 0)
             if step.container:
@@ -261,6 +287,6 @@ def reached_expressions(
                     by_chance = 0 if step.many and child in graph.names else _KIND_BY_CHANCE
                     offer(reached + 1 + by_chance, child, here, many=step.many)
     # Last, because no way leads through them.
-    expressions = {cls: here for cls, (_, here) in containers.items()} | expressions
+    expressions = {cls: here for cls, (_, here) in containers.items()} | items | expressions
     _place(expressions, graph, places or {})
     return expressions

@@ -1,10 +1,13 @@
-"""What those members of ``bpy.context`` are that only an editor gives: asked, Blender has no value of them."""
+"""What those members of ``bpy.context`` are that only an editor gives, or what the interface shows: asked, Blender has
+no value of them.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
 from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.records import WITHOUT_SHOWN
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -29,6 +32,15 @@ _MEMBERS = {
     "vertex_paint_object": "Object", "visible_fcurves": "[FCurve]", "visible_gpencil_layers": "[GPencilLayer]",
     "weight_paint_object": "Object",
 }  # fmt: skip
+# Members that are None while the interface shows no such thing. They are not asked: reading some crashes Blender.
+_OF_WHAT_IS_SHOWN = frozenset({"asset", "gizmo_group", "region_popup"})
+
+
+def mark_absent(symbols: Mapping[str, dict[str, Any]]) -> None:
+    """Flags the members that are None unless the interface shows what they are."""
+    for row in symbols.values():
+        if row["kind"] == "context" and row["path"].rpartition(".")[2] in _OF_WHAT_IS_SHOWN:
+            row["flags"] = [*row.get("flags", ()), WITHOUT_SHOWN]
 
 
 def name_classes(symbols: Mapping[str, dict[str, Any]]) -> None:

@@ -19,7 +19,7 @@ from kb_build.blender.call_texts import (
     with_sets,
     without_default,
 )
-from kb_build.blender.context_members import name_classes
+from kb_build.blender.context_members import mark_absent, name_classes
 from kb_build.blender.docstrings import constructed_by, parse_docstring
 from kb_build.blender.manual_links import manual_links
 from kb_build.blender.owners_animated import unmark_unanimated
@@ -412,6 +412,7 @@ def _correct(raw: _Raw) -> None:
             raw.symbols[holder]["target"] = tree
     _name_active_items(raw.symbols)
     name_classes(raw.symbols)
+    mark_absent(raw.symbols)
     unmark_unanimated(raw.symbols)
     mark_same_values(raw.symbols)
     _substitute(raw.symbols.values())

@@ -1,4 +1,4 @@
-"""What on the way to instances of a class is None, or an empty collection, on new things."""
+"""What on the way to instances of a class is None, or an empty collection, on new things, or only read by a loop."""
 
 from __future__ import annotations
 
@@ -10,7 +10,14 @@ from kb_build.flow.blender.facts import NARROWER
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.flags import empty_when_new
 from kb_build.symbols.lineages import lineage
-from kb_build.symbols.records import EMPTY, EMPTY_AT_START, NONE_ON_SOME
+from kb_build.symbols.records import (
+    EMPTY,
+    EMPTY_AT_START,
+    ITERATED,
+    NONE_ON_SOME,
+    WITHOUT_AREA,
+    WITHOUT_SHOWN,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -20,6 +27,10 @@ if TYPE_CHECKING:
 _WAY = re.compile(r"(?P<before>.+)\.(?P<name>\w+)(?P<key>\[[^\]]+\])?")
 _FIRST = (None, "[0]")  # of a collection whose elements have no names; who asks for a name has made it
 _EMPTY = frozenset({EMPTY, EMPTY_AT_START, NONE_ON_SOME})
+_CONTEXT = "bpy.context"
+_ABSENT = frozenset(
+    {WITHOUT_AREA, WITHOUT_SHOWN}
+)  # of members of the context that scripts hardly find filled
 _FAR = 3  # dots of what leads through another pointer than those to what is always there: ``bpy.context.scene.world``
 
 
@@ -33,6 +44,10 @@ class EmptyWays:
         # (name, class that it leads to, or of the collection itself) → properties
         self._leading: dict[tuple[str, str], list[Symbol]] = defaultdict(list)
         self._holding: dict[tuple[str, str], list[Symbol]] = defaultdict(list)
+        # name of a member of the context that is None for most scripts → its path
+        self._absent: dict[str, str] = {}
+        # class → the property whose elements of that class only a loop gives
+        self._looped: dict[str, str] = {}
         for symbol in symbols:
             if symbol.kind == "class" and symbol.base:
                 name, base = (path.removeprefix(TYPES) for path in (symbol.path, symbol.base))
@@ -41,17 +56,24 @@ class EmptyWays:
             elif symbol.kind == "property" and symbol.target:
                 target = NARROWER.get(symbol.path, symbol.target)
                 self._leading[symbol.name, target].append(symbol)
+                if ITERATED in symbol.flags:
+                    self._looped[target] = symbol.path
                 if symbol.collection:
                     self._holding[symbol.name, symbol.collection].append(symbol)
+            elif symbol.kind == "context" and not _ABSENT.isdisjoint(symbol.flags):
+                self._absent[symbol.name] = symbol.path
 
     def last_empty(self, cls: str) -> str:
         """The path of the last pointer on the way to a class, given by its name, that is None on a new thing, or of the
-        collection whose first or active element is taken and that is empty there; empty for none.
+        collection whose first or active element is taken and that is empty there, or whose elements a loop alone gives;
+        empty for none.
         """
         way = _WAY.fullmatch(self._reached.get(cls, ""))
         if way is None:
-            return ""
+            return self._looped.get(cls, "")
         before, name, key = way.groups()
+        if before == _CONTEXT and name in self._absent:
+            return self._absent[name]
         is_far = before.count(".") >= _FAR
         if key not in _FIRST and not is_far:
             return ""

@@ -300,6 +300,11 @@ def of_evaluated(expression: str) -> str:
     return expression.replace(_ACTIVE, f"{_ACTIVE}{GET_EVALUATED}", 1)
 
 
+def item_of(collection: str) -> str:
+    """What a loop over a collection calls each of its elements: ``object_instance``."""
+    return collection.removesuffix("s")
+
+
 def _made_by(symbol: Symbol) -> str:
     """``made by …`` of a pointer that something was seen to fill; empty for others."""
     return "made by " + ", then ".join(f"`{call}`" for call in fillers(symbol)) if fillers(symbol) else ""

@@ -57,6 +57,8 @@ FILLED_ON = "filled-on:"
 # The flags of a member of the context that is None: where no object is active, and outside the areas of windows.
 WITHOUT_ACTIVE = "none-without-active-object"
 WITHOUT_AREA = "none-without-area"
+# … and while the interface shows no such thing: no popup, no asset.
+WITHOUT_SHOWN = "none-unless-shown"
 # The flag of a socket that its identifier gives in no mode of its node.
 NEVER_BY_IDENTIFIER = "identifier-never"
 # How flags begin that name the other operators which an operator's own script calls.
@@ -114,8 +116,8 @@ ITERATED = "only-iterated"
 STUB = "stub"
 # The flag of a pointer that is None on some new things of a kind and not on others.
 NONE_ON_SOME = "none-on-some"
-# The flags of a collection of ``bpy.data`` that is empty when Blender starts, and of a pointer that leads to something
-# on what it starts with.
+# The flags of a collection of ``bpy.data`` or the window manager that is empty when Blender starts, and of a pointer
+# that leads to something on what it starts with.
 EMPTY_AT_START, FILLED_AT_START = "empty-at-start", "filled-at-start"
 # The flag of a function that gave None for every index, and of a method that changes its value and returns None.
 GIVES_NONE, RETURNS_NONE = "gives-none", "returns-none"

@@ -7,16 +7,18 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import NODE, TYPES
 from kb_build.symbols.flags import alike_nodes, empty_when_new, fillers, new_subscript
-from kb_build.symbols.lines import default_text, of_evaluated
+from kb_build.symbols.lines import default_text, item_of, of_evaluated
 from kb_build.symbols.records import (
     EMPTY,
     EMPTY_AT_START,
     EVALUATED,
     FILLED_AT_START,
+    ITERATED,
     NAMES_ITEMS,
     READ_ONLY,
     WITHOUT_ACTIVE,
     WITHOUT_AREA,
+    WITHOUT_SHOWN,
 )
 from kb_serve.answer.ways.makers_of_instances import told_makers
 from kb_serve.answer.ways.operator_needs import calls_before
@@ -33,6 +35,7 @@ _ADDING = ("new", "add", "link")  # the functions of collections that do so, the
 _NONE_IN_CONTEXT = {
     WITHOUT_ACTIVE: "`None` where no object is active",
     WITHOUT_AREA: "`None` outside the areas of windows, as in a Blender without a window",
+    WITHOUT_SHOWN: "`None` while the interface shows none",
 }
 
 
@@ -139,7 +142,13 @@ def _leads_on(owner: SymbolEntry, cls: SymbolEntry) -> bool:
 
 
 def _empty_text(pointer: Symbol, reader: BaseReader) -> str:
-    """That a pointer is None, or a collection empty; nothing of one that the start-up file has filled."""
+    """That a pointer is None, or a collection empty or only read by a loop; nothing of one that the start-up file has
+    filled.
+    """
+    if ITERATED in pointer.flags and (owner := reader.entry(pointer.owner)):
+        return f"a loop gives it: `for {item_of(pointer.name)} in {owner.reached}.{pointer.name}:`"
+    if absent := next((text for flag, text in _NONE_IN_CONTEXT.items() if flag in pointer.flags), ""):
+        return f"`{pointer.name}` is {absent}"
     if tree := _assigned(pointer, reader):
         return f"`{pointer.name}` is {default_text(pointer)}: assign `{tree}`"
     if EMPTY_AT_START in pointer.flags:

@@ -11,7 +11,8 @@ from told_by_blender import told_by_blender
 
 from kb_build.blender.access_paths import reached_expressions
 from kb_build.flow.blender.symbols import BaseSymbols
-from kb_build.symbols.records import Symbol
+from kb_build.index.empty_ways import EmptyWays
+from kb_build.symbols.records import ITERATED, WITHOUT_AREA, WITHOUT_SHOWN, Symbol
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -95,6 +96,55 @@ def test_a_collection_is_reached_and_no_way_leads_through_it() -> None:
     found = reached_expressions(symbols)
     assert found["BlendDataObjects"] == "bpy.data.objects"
     assert "Far" not in found
+
+
+def test_what_a_loop_alone_gives_is_called_as_in_the_loop() -> None:
+    parts = replace(prop("Object.far_parts", "Far", "collection"), flags=(ITERATED,))
+    symbols = [*SMALL, parts, cls("Beyond"), prop("Far.beyond", "Beyond")]
+    found = reached_expressions(symbols)
+    assert found["Far"] == "far_part"
+    assert "Beyond" not in found
+    assert (
+        EmptyWays(symbols, {TYPES + name: way for name, way in found.items()}).last_empty("Far") == parts.path
+    )
+    # What is reached without one keeps its way.
+    assert reached_expressions([*symbols, prop("Mesh.far", "Far")])["Far"] == "bpy.context.object.data.far"
+
+
+@pytest.mark.parametrize("flag", [WITHOUT_AREA, WITHOUT_SHOWN])
+def test_a_member_of_the_context_that_is_mostly_none_is_what_the_way_lacks(flag: str) -> None:
+    view = [cls("Region"), cls("View2D"), prop("Context.region", "Region"), prop("Region.view2d", "View2D")]
+    symbols = [*SMALL, *view, replace(member("region", "Region"), flags=(flag,))]
+    found = {TYPES + name: way for name, way in reached_expressions(symbols).items()}
+    assert found[f"{TYPES}View2D"] == "bpy.context.region.view2d"
+    ways = EmptyWays(symbols, found)
+    assert {ways.last_empty(name) for name in ("Region", "View2D")} == {"bpy.context.region"}
+    assert ways.last_empty("Object") == ""
+
+
+def test_a_popup_is_the_last_way_to_a_region() -> None:
+    symbols = [
+        *SMALL,
+        cls("Region"),
+        prop("Context.region_popup", "Region"),
+        prop("Context.region", "Region"),
+    ]
+    assert reached_expressions(symbols, {f"{TYPES}Context.region": 20})["Region"] == "bpy.context.region"
+
+
+def test_a_ramp_is_reached_on_the_node_that_has_one() -> None:
+    node = "ShaderNodeValToRGB"
+    symbols = [
+        *SMALL, cls("Material", "ID"), cls("ShaderNodeTree", "ID"), cls("Node"), cls("ColorRamp"),
+        cls("ColorRampElement"),
+        cls(node, "Node", trees=("ShaderNodeTree",)), prop("Object.active_material", "Material"),
+        prop("Material.node_tree", "ShaderNodeTree"), prop("ShaderNodeTree.nodes", "Node", "collection"),
+        prop("ClothModifier.color_ramp", "ColorRamp"), prop(f"{node}.color_ramp", "ColorRamp"),
+        prop("ColorRamp.elements", "ColorRampElement", "collection"),
+    ]  # fmt: skip
+    found = reached_expressions(symbols)
+    way = "bpy.context.object.active_material.node_tree.nodes[0].color_ramp"
+    assert (found["ColorRamp"], found["ColorRampElement"]) == (way, f"{way}.elements[0]")
 
 
 def test_an_unreachable_class_has_no_expression() -> None:
@@ -223,8 +273,8 @@ def test_every_expression_is_python_from_a_root(reached: dict[str, str]) -> None
     assert len(reached) > 1_350
     for expression in reached.values():
         compile(expression, "reached", "eval")
-        # A layout is given to what draws.
-        assert expression.startswith(("bpy.context", "bpy.data", "self.layout"))
+        # A layout is given to what draws, an instance to a loop.
+        assert expression.startswith(("bpy.context", "bpy.data", "self.layout", "object_instance"))
 
 
 def test_no_node_is_placed_in_a_tree_that_refuses_it(extract: Extract, reached: dict[str, str]) -> None:

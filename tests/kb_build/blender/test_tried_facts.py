@@ -17,6 +17,7 @@ from kb_build.symbols.records import (
     FILLED_AT_START,
     GIVES_NONE,
     INVERTED,
+    ITERATED,
     KEEPS_ITEMS,
     NONE_ON_SOME,
     SAME_VALUE,
@@ -352,6 +353,10 @@ def test_what_blender_starts_without_and_with_is_told(symbols: Mapping[str, Symb
     of_data = "bpy.types.BlendData."
     assert EMPTY_AT_START in symbols[f"{of_data}brushes"].flags
     assert EMPTY_AT_START not in symbols[f"{of_data}materials"].flags
+    assert EMPTY_AT_START in symbols["bpy.types.WindowManager.operators"].flags
+    assert EMPTY_AT_START not in symbols["bpy.types.WindowManager.windows"].flags
+    looped = [path for path, symbol in symbols.items() if ITERATED in symbol.flags]
+    assert looped == ["bpy.types.Depsgraph.object_instances"]
     assert FILLED_AT_START in symbols["bpy.types.Object.active_material"].flags
     assert FILLED_AT_START not in symbols["bpy.types.Scene.active_clip"].flags
     settings = symbols["bpy.types.Brush.gpencil_settings"]

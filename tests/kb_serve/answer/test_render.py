@@ -486,6 +486,14 @@ def test_a_member_of_a_node_that_no_tree_takes_says_so(kb: KnowledgeBase) -> Non
             "`layers` is empty (new GreasePencil): add to it by `layers.new(name)`; "
             "`frames` is empty (new GreasePencilLayer): add to it by `frames.new(frame_number)`",
         ),
+        (
+            "DepsgraphObjectInstance.matrix_world",
+            "a loop gives it: `for object_instance in "
+            "bpy.context.evaluated_depsgraph_get().object_instances:`",
+        ),
+        ("Operator.layout", "`operators` is empty in the start-up file"),
+        ("View2D.region_to_view", "`region` is `None` outside the areas of windows"),
+        ("AssetRepresentation.name", "`asset` is `None` while the interface shows none"),
         ("MovieClip.display_aspect", "`active_clip` is `None` on a new Scene"),
     ],
 )

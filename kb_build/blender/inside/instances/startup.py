@@ -4,6 +4,7 @@
 import bpy
 
 from ..apart import can_work_apart, sent_apart
+from ..classes.rna import path_of
 from ..wire import plain
 from .assigning import refused_value_items
 from .making import called, choices, startup_block
@@ -93,12 +94,13 @@ def look_at_start(observer):
 
 
 def write_present(write, observer):
-    """A ``start_empty`` record for each collection of ``bpy.data`` in which Blender starts with nothing, and a
-    ``start_filled`` one for each pointer of what it starts with that leads to something.
+    """A ``start_empty`` record for each collection of ``bpy.data`` and of the window manager in which Blender starts
+    with nothing, and a ``start_filled`` one for each pointer of what it starts with that leads to something.
     """
-    for prop in bpy.data.bl_rna.properties:
-        if prop.type == "COLLECTION" and not len(getattr(bpy.data, prop.identifier)):
-            write("start_empty", path=f"bpy.types.BlendData.{prop.identifier}")
+    for owner in (bpy.data, bpy.context.window_manager):
+        for prop in owner.bl_rna.properties:
+            if prop.type == "COLLECTION" and not len(getattr(owner, prop.identifier)):
+                write("start_empty", path=path_of(owner.bl_rna, prop.identifier))
     context = bpy.context
     material = startup_block(bpy.data.materials)
     roots = (

@@ -74,6 +74,20 @@ def is_part(value):
     )
 
 
+def write_iterated(write):
+    """An ``iterated`` record for each collection of the evaluated scene that gives its elements to loops alone."""
+    graph = bpy.context.evaluated_depsgraph_get()
+    for prop in graph.bl_rna.properties:
+        if prop.type != "COLLECTION":
+            continue
+        try:
+            getattr(graph, prop.identifier)[0]
+        except TypeError:
+            write("iterated", path=path_of(graph.bl_rna, prop.identifier))
+        except IndexError:
+            pass
+
+
 def clear(scene):
     """Goes back to a scene, and removes the one that the window shows, with what is in it."""
     scratch = bpy.context.scene
@@ -102,3 +116,4 @@ def find_all(write, skipped):
             clear(before)
     for path in sorted(found):
         write("evaluated", path=path)
+    write_iterated(write)
