@@ -186,8 +186,8 @@ def _add_left_out(row: _Row, seen: Mapping[str, Any]) -> None:
 
 
 def _add_limits(row: _Row, seen: Mapping[str, Any]) -> None:
-    """Adds what Blender keeps otherwise than RNA tells: ends of ranges, items taken as others, lengths that vary, names
-    of nothing else than a part of the object.
+    """Adds what Blender keeps otherwise than RNA tells: ends of ranges, items taken as others or not at all, lengths
+    that vary, names of nothing else than a part of the object.
     """
     if seen.get("varies"):
         row["array"] = [0]
@@ -198,6 +198,8 @@ def _add_limits(row: _Row, seen: Mapping[str, Any]) -> None:
     for item in row.get("enum_items", ()):
         if kept := seen.get("read_as", {}).get(item["identifier"]):
             _append_sentence(item, f"Reads back as {kept!r}")
+        elif item["identifier"] in seen.get("left_out", ()):
+            _append_sentence(item, "Assigned, it changes nothing")
 
 
 def _flag(row: _Row, flags: Iterable[str]) -> None:

@@ -187,6 +187,17 @@ def test_an_item_that_is_taken_as_another_one_says_so(symbols: Mapping[str, Symb
     assert told == {name for name, value in kept.items() if value != repr(name)} == {"OPAQUE", "CLIP"}
 
 
+def test_an_item_that_is_left_out_says_so(symbols: Mapping[str, Symbol], tmp_path: Path) -> None:
+    items = {item.identifier: item.description for item in symbols[f"{NODES}Image.file_format"].enum_items}
+    told = {name for name, text in items.items() if text.endswith("Assigned, it changes nothing")}
+    code = ["import bpy", "image = bpy.data.images.new('i', 8, 8)"]
+    for name in items:
+        code += [f"image.file_format = {start!r}\nimage.file_format = {name!r}" for start in ("PNG", "BMP")]
+    rows = run_statements(tmp_path, code, dict.fromkeys(range(2, len(code)), "image.file_format"))[2:]
+    kept = dict(zip(items, zip(*[(row[2] for row in rows)] * 2, strict=True), strict=True))
+    assert told == {name for name, values in kept.items() if values == ("'PNG'", "'BMP'")} == {"FFMPEG"}
+
+
 def test_what_an_operator_takes_for_what_is_left_out_is_no_default(symbols: Mapping[str, Symbol]) -> None:
     cube = symbols["bpy.ops.mesh.primitive_cube_add"]
     given = {parameter.name: parameter for parameter in cube.parameters}

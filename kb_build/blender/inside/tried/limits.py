@@ -2,7 +2,8 @@
 """Finds values that Blender keeps, or does not keep, otherwise than RNA tells.
 
 Numbers outside their range whose setters do not ask for it; numbers that stop before its end, as the rest of the
-instance has it; arrays that are not as long as RNA tells; items of enumerations that are taken as others; and texts
+instance has it; arrays that are not as long as RNA tells; items of enumerations that are taken as others, or leave what
+there was; and texts
 that are left out but where they name a part of the object, as a cloth's pin group is. Of one
 instance of each class such values are assigned and read again. What a maker makes is tried in a process of its own:
 what extreme values end there is left out.
@@ -25,6 +26,7 @@ PAST = 1  # how far beyond an end is tried
 NEAR = 0.01  # … as a share of the end, and of one: what turns round at a limit of its own takes no more
 FAR = 1000  # assigned where there is no end
 NAME = "part"
+TWO = 2
 # Parts of an object that a text may name → the collection of them in an object, which some have not.
 PARTS = {"vertex group": lambda obj: obj.vertex_groups, "UV map": lambda obj: obj.data.uv_layers}
 
@@ -118,21 +120,35 @@ def stops(struct, prop):
     }
 
 
-def read_as(struct, prop):
-    """item → the other item that is read once it was assigned, whatever there was before; of those that an
-    enumeration takes.
+def read_otherwise(struct, prop):
+    """What is read once an item was assigned that an enumeration takes, where that is another one: ``read_as`` has item
+    → the other one, whatever there was before; ``left_out`` those that leave what there was.
     """
     name, before = prop.identifier, getattr(struct, prop.identifier)
     kept = {item: read_back(struct, name, item) for item in refused_value_items(struct, name)}
-    found = {}
+    steady = [item for item in kept if kept[item] == item]
+    read_as, left_out = {}, []
     for item, other in kept.items():
-        start = next((each for each in kept if each == kept[each] != other), None)
-        if other and other != item and start:
-            read_back(struct, name, start)
-            if read_back(struct, name, item) == other:
-                found[item] = other
+        if not other or other == item:
+            continue
+        seen = [(start, assigned_after(struct, name, start, item)) for start in starts(steady, other)]
+        if seen and all(kept_now == start for start, kept_now in seen):
+            left_out += [item] if len(seen) == TWO else []
+        elif seen and seen[0][1] == other:
+            read_as[item] = other
     read_back(struct, name, before)
-    return found
+    return {"read_as": read_as, "left_out": left_out}
+
+
+def starts(steady, other):
+    """Two items that are kept and differ from what was read: the first of them decides."""
+    return [item for item in steady if item != other][:TWO]
+
+
+def assigned_after(struct, name, start, item):
+    """What is read of an enumeration that had one item, and was assigned another one."""
+    read_back(struct, name, start)
+    return read_back(struct, name, item)
 
 
 def part_named(struct, name):
@@ -166,7 +182,7 @@ def has_other_length(struct, prop):
 def tried(struct, prop):
     """What is told of a property of an instance that can be assigned; {} for nothing."""
     if prop.type == "ENUM":
-        found = {} if prop.is_enum_flag else {"read_as": read_as(struct, prop)}
+        found = {} if prop.is_enum_flag else read_otherwise(struct, prop)
     elif prop.type == "STRING":
         found = {"names": part_named(struct, prop.identifier)}
     else:
