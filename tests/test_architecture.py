@@ -80,7 +80,7 @@ ORDERS = {
     ),
     "kb_serve.recognise.names": ("likely", "named", "elsewhere", "by_words"),
     "kb_serve.answer": (
-        *("budget", "pages", "facts", "ways", "render", "steps", "topic"),
+        *("budget", "pages", "facts", "ways", "render", "steps", "topic", "asked"),
         *(
             "hits",
             "hit_lines",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from kb_build.index.analysis import stems_of
 from kb_build.symbols.api_names import TYPES
+from kb_serve.answer.asked.members import AskedMembers
 from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.changes import changes_of, version_asked_about
 from kb_serve.answer.drafts import Draft, draft_of, paged, with_notes
@@ -26,6 +27,7 @@ from kb_serve.errors import BadQuery
 from kb_serve.query_limits import LEAST_TOKENS, LIMIT, MAX_LIMIT
 from kb_serve.rank.merging import SURE, QueryRanker, Ranking
 from kb_serve.rank.ranked_id import RankedId
+from kb_serve.recognise.message_patterns import is_message
 from kb_serve.recognise.several import parts_of
 
 if TYPE_CHECKING:
@@ -44,6 +46,7 @@ _NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
 _SETTINGS = 2  # of a topic that are hits before its classes
 _LESS = 0.02  # score from one id to the next, where nothing was ranked
 _LONGEST_WORD = 100  # no name of Blender's has as many letters
+_CODE = frozenset("()[]{}=\"'")
 _OPERATOR = re.compile(r"bpy\.ops\.\w+\.\w+")
 _COMMENT = re.compile(r"(?:^|(?<=\s))#\s[^\n]*\n", re.MULTILINE)  # of code, of which lines are joined
 _DOCSTRING = re.compile(r"(:\s*\n\s*)(?:\"{3}.*?\"{3}|'{3}.*?'{3})", re.DOTALL)
@@ -63,6 +66,7 @@ class AnswerComposer:
         self._blocks = HitBlocks(reader, self._renderer, self._lines)
         self._topics = Topics(reader)
         self._practice = Practice(reader)
+        self._members = AskedMembers(reader)
         self._draft = lru_cache(maxsize=16)(self._draft_with_notes)
 
     def answer(self, query: str, limit: int, max_tokens: int, part: int, command: str = "") -> DocsAnswer:
@@ -114,7 +118,7 @@ class AnswerComposer:
             text = "Nothing in this knowledge base matches the query. Try other words, or a name as Blender writes it."
             return draft_of("none", (), notes, (AnswerBlock("" if ranking.notes else text),))
         asked = asked_words(text)
-        members = self._asked_members(hits[0], ranking.ranked, asked)
+        members = self._asked_for(text, asked, rows, ranking.ranked)
         if ranking.named:
             names = ranking.recognition.arguments.get(hits[0].id, ())
             blocks = self._named(hits, rows, text, names, members)
@@ -127,18 +131,20 @@ class AnswerComposer:
         hits = hits_of(_in_given_order(changes.ids[:limit], "topic"), self._reader)
         return draft_of("candidates", hits, (), changes.blocks)
 
-    def _asked_members(
-        self, hit: Hit, rows: Sequence[RankedId], asked: Sequence[str]
-    ) -> Iterator[AnswerBlock]:
-        """The members found of the class that is the best hit, all words of whose names the question has, ahead of all
-        that the class has.
+    def _asked_for(
+        self, text: str, asked: Sequence[str], rows: Sequence[RankedId], found: Sequence[RankedId]
+    ) -> list[str]:
+        """Paths of the members that a question asks for beside the first of ``rows``. Code says itself whose they are:
+        there they are those that were ``found`` of the class that is the first row.
         """
-        own = f"{hit.id}."
-        found = (row.id.removeprefix(own) for row in rows if row.id.startswith(own))
-        names = tuple(name for name in found if stems_of(name).issubset(asked))
-        if names:
-            lines = self._lines.members(hit.id, names)
-            yield AnswerBlock("**Asked for**\n" + "\n".join(lines), "members asked for")
+        if _CODE.isdisjoint(text) and not is_message(text):
+            return self._members.of(text, asked, [row.id for row in rows])
+        own = f"{rows[0].id}."
+        return [
+            row.id
+            for row in found
+            if row.id.startswith(own) and stems_of(row.id.removeprefix(own)).issubset(asked)
+        ]
 
     def _known(self, hits: Sequence[Hit], question: str, *, is_named: bool) -> Iterator[str]:
         """What one has to know of the first hits, up to the first name: code needs that, behind pages that tell how."""
@@ -159,9 +165,9 @@ class AnswerComposer:
         rows: Sequence[RankedId],
         text: str,
         arguments: Collection[str],
-        members: Iterable[AnswerBlock],
+        members: Sequence[str],
     ) -> Iterator[AnswerBlock]:
-        """All of what a query names, with its ``arguments`` and members that the query names as well ahead of the
+        """All of what a query names, with its ``arguments`` and ``members`` that the query names as well ahead of the
         others; and a line for what else was found.
         """
         given = [*self._renderer.arguments(hits[0].id, arguments)]
@@ -169,15 +175,17 @@ class AnswerComposer:
         yield from self._renderer.sockets(hits[0].id, text)
         whole = self._blocks.whole(hits[0], rows[0], asked_of((), arguments if given else ()))
         yield from islice(whole, 1)
-        yield from members
-        yield from _names_before_long(whole, [*self._lines.further(hits[1:], rows[1:])])
+        first = members if hits[0].is_page else ()
+        yield from self._lines.asked_members(hits[0], () if first else members)
+        others = [*self._lines.further(*_but(members, hits, rows), first=first)]
+        yield from _names_before_long(whole, others)
 
     def _found(
         self,
         hits: Sequence[Hit],
         rows: Sequence[RankedId],
         asked: Sequence[str],
-        members: Iterable[AnswerBlock],
+        members: Sequence[str],
     ) -> Iterator[AnswerBlock]:
         """The best hit in brief, its members that are asked for, and the others. A page says how, but code needs names:
         they follow its heading.
@@ -185,10 +193,15 @@ class AnswerComposer:
         found = self._lines.asked(hits[0], asked)
         names = {value.argument for value in found if value.argument}
         told = [*self._renderer.arguments(hits[0].id, names, unless_all_fit=True)]
-        excerpt = self._blocks.excerpt(hits[0], rows[0], asked_of(found, names if told else ()))
-        others = [*self._lines.further(hits[1:], rows[1:], asked)]
+        own = f"{hits[0].id}."
+        near = tuple(name for name in rows[0].members if own + name not in members)
+        excerpt = self._blocks.excerpt(
+            hits[0], rows[0]._replace(members=near), asked_of(found, names if told else ())
+        )
+        first = members if hits[0].is_page else ()
+        others = [*self._lines.further(*_but(members, hits, rows), asked, first=first)]
         yield next(excerpt)
-        yield from members
+        yield from self._lines.asked_members(hits[0], () if first else members)
         yield from told
         yield from self._made(hits[0], asked_of(found))
         if hits[0].is_page:
@@ -267,6 +280,14 @@ class AnswerComposer:
 def _in_given_order(ids: Iterable[str], why: Literal["part", "topic"]) -> list[RankedId]:
     """Ids that no search has ranked, with scores that fall from one to the next."""
     return [RankedId(identifier, 1.0 - _LESS * place, why) for place, identifier in enumerate(ids)]
+
+
+def _but(
+    paths: Collection[str], hits: Sequence[Hit], rows: Sequence[RankedId]
+) -> tuple[list[Hit], list[RankedId]]:
+    """The hits behind the first that are none of some symbols, and their rows."""
+    left = [place for place, hit in enumerate(hits) if place and hit.id not in paths]
+    return [hits[place] for place in left], [rows[place] for place in left]
 
 
 def _in_one_line(query: str) -> str:

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.lines import first_sentence, written
 from kb_serve.answer.budget import AnswerBlock, clip
 from kb_serve.answer.facts.asked_values import asked_values, unsaid
+from kb_serve.answer.hits import hits_of
 from kb_serve.answer.pages import said_of
+from kb_serve.rank.ranked_id import RankedId
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -15,7 +17,6 @@ if TYPE_CHECKING:
     from kb_serve.answer.facts.asked_values import AskedValue
     from kb_serve.answer.hits import Hit
     from kb_serve.lookups.records import Creation, SymbolEntry
-    from kb_serve.rank.ranked_id import RankedId
     from kb_serve.reader import BaseReader
 
 NAMES = "further names"
@@ -30,9 +31,16 @@ class HitLines:
         self._reader = reader
 
     def further(
-        self, hits: Sequence[Hit], rows: Sequence[RankedId], asked: Sequence[str] = ()
+        self,
+        hits: Sequence[Hit],
+        rows: Sequence[RankedId],
+        asked: Sequence[str] = (),
+        first: Sequence[str] = (),
     ) -> Iterator[AnswerBlock]:
-        """A line for each further hit: symbols, then pages. ``asked`` are the question's words."""
+        """A line for each further hit: symbols, the ``first`` of which are given, then pages. ``asked`` are the
+        question's words.
+        """
+        before = [*self.by_path(first)]
         further = list(zip(hits, rows, strict=True))
         made = self._reader.makers.creations([hit.id for hit in hits if hit.kind == "class"])
         for title, name, are_pages in (
@@ -44,8 +52,22 @@ class HitLines:
                 for hit, row in further
                 if hit.is_page == are_pages
             ]
-            if lines:
+            if lines := [*(() if are_pages else before), *lines]:
                 yield AnswerBlock(f"**{title}**\n" + "\n".join(lines), name)
+
+    def asked_members(self, hit: Hit, paths: Sequence[str]) -> Iterator[AnswerBlock]:
+        """A line for each member that is asked for beside the best hit; of a class without its name."""
+        own = f"{hit.id}."
+        lines = [*self.members(hit.id, [path.removeprefix(own) for path in paths if path.startswith(own)])]
+        lines += self.by_path([path for path in paths if not path.startswith(own)])
+        if lines:
+            yield AnswerBlock("**Asked for**\n" + "\n".join(lines), "members asked for")
+
+    def by_path(self, paths: Sequence[str]) -> Iterator[str]:
+        """A line for each of some symbols."""
+        rows = [RankedId(path, 1.0, "asked") for path in paths]
+        for hit, row in zip(hits_of(rows, self._reader), rows, strict=True):
+            yield f"- {self.line(hit, row)}"
 
     def line(self, hit: Hit, row: RankedId) -> str:
         """What a hit is, with the members that were found with it."""

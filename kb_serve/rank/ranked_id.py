@@ -8,8 +8,8 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import Why
 
 # How an id got into the list that was not recognised in the query: by its words, as a node whose label is in the
-# question, as a part of what was asked for, or with a topic.
-_NotRecognised = Literal["found", "beside", "part", "topic"]
+# question, as a member that is asked for, as a part of what was asked for, or with a topic.
+_NotRecognised = Literal["found", "beside", "asked", "part", "topic"]
 
 
 class RankedId(NamedTuple):

@@ -1,0 +1,107 @@
+"""The members that a question asks for one by one stand ahead of what else is told, each of them once."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_serve.answer.asked.members import AskedMembers
+from kb_serve.answer.facts.asked_values import asked_words
+
+if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
+
+T = "bpy.types."
+
+
+def asked(question: str, kb: KnowledgeBase, *ids: str) -> list[str]:
+    found = AskedMembers(kb.reader).of(question, asked_words(question), [f"{T}{one}" for one in ids])
+    return [path.removeprefix(T) for path in found]
+
+
+@pytest.mark.parametrize(
+    ("question", "ids", "members"),
+    [
+        (
+            "bevel modifier segments width limit method",
+            ["BevelModifier.limit_method"],
+            ["BevelModifier.segments", "BevelModifier.width"],
+        ),
+        # One word may belong to several names, as often as it is said.
+        (
+            "eevee shadow ray count step count resolution scale",
+            ["SceneEEVEE.use_shadows"],
+            ["SceneEEVEE.shadow_ray_count", "SceneEEVEE.shadow_step_count", "SceneEEVEE.shadow_resolution_scale"],
+        ),
+        # By the label, by the name without what begins those of switches, by one rare word of a name.
+        (
+            "cloth pressure scale, fluid density",
+            ["ClothSettings"],
+            ["ClothSettings.pressure_factor", "ClothSettings.fluid_density"],
+        ),
+        (
+            "grease pencil layer opacity and lights",
+            ["GreasePencilLayer"],
+            ["GreasePencilLayer.opacity", "GreasePencilLayer.use_lights"],
+        ),
+        (
+            "camera depth of field focus object fstop blades",
+            ["CameraDOFSettings"],
+            [
+                "CameraDOFSettings.use_dof",
+                "CameraDOFSettings.focus_object",
+                "CameraDOFSettings.aperture_fstop",
+                "CameraDOFSettings.aperture_blades",
+            ],
+        ),
+        # Of another class where that is named as well.
+        (
+            "hook and lattice modifier strength",
+            ["HookModifier.vertex_group", "LatticeModifier.object"],
+            ["HookModifier.strength", "LatticeModifier.strength"],
+        ),
+        # As it is written, though all its words are another's.
+        (
+            "frame_final_start, frame_start, frame_offset_start",
+            ["Strip.frame_final_start", "Scene.frame_start"],
+            ["Strip.frame_start", "Strip.frame_offset_start"],
+        ),
+    ],
+)  # fmt: skip
+def test_each_word_of_a_list_asks_for_a_member(
+    question: str, ids: list[str], members: list[str], kb: KnowledgeBase
+) -> None:
+    assert sorted(asked(question, kb, *ids)) == sorted(members)
+
+
+@pytest.mark.parametrize(
+    ("question", "ids"),
+    [
+        ("campfire with rising smoke", ["FluidDomainSettings.beta"]),  # says nothing but what it is about
+        ("transparent background png, no sky", ["RenderSettings.film_transparent"]),  # by chance
+        ("different tint for each copy of the same object", ["Object.color", "Node.label"]),
+        ("bevel modifier", ["BevelModifier"]),
+    ],
+)
+def test_words_by_chance_ask_for_none(question: str, ids: list[str], kb: KnowledgeBase) -> None:
+    assert not asked(question, kb, *ids)
+
+
+def test_behind_a_page_they_are_the_first_names(kb: KnowledgeBase) -> None:
+    text = kb.query("metaball threshold resolution update method").text
+    names = text.partition("**In Python**\n")[2].split("\n")
+    for name, line in zip(("threshold", "resolution", "update_method"), names, strict=False):
+        assert f"`{T}MetaBall.{name}`" in line
+
+
+def test_beside_another_member_they_stand_before_its_values(kb: KnowledgeBase) -> None:
+    text = kb.query("bevel modifier segments width limit method").text
+    before, _, after = text.partition("**Values**")
+    assert f"**Asked for**\n- `{T}BevelModifier.segments`" in before
+    assert f"`{T}BevelModifier.segments`" not in after
+
+
+def test_code_says_itself_whose_they_are(kb: KnowledgeBase) -> None:
+    text = kb.query('obj.modifiers["Bevel"].width = obj.modifiers["Bevel"].segments').text
+    assert "**Asked for**" not in text
