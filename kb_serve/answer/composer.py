@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 from kb_build.index.analysis import stems_of
 from kb_build.symbols.api_names import TYPES
 from kb_serve.answer.asked.members import AskedMembers
+from kb_serve.answer.asked.sides import are_told, meant_by, sides_of
 from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.changes import changes_of, version_asked_about
 from kb_serve.answer.drafts import Draft, draft_of, paged, with_notes
@@ -119,11 +120,15 @@ class AnswerComposer:
             return draft_of("none", (), notes, (AnswerBlock("" if ranking.notes else text),))
         asked = asked_words(text)
         members = self._asked_for(text, asked, rows, ranking.ranked)
-        if ranking.named:
+        if meant := self._compared(text, (hits[0].id, *members), limit):
+            return self._compare(text, meant, rows, limit, notes)
+        if not ranking.named:
+            kind, blocks = "candidates", self._found(hits, rows, asked, members)
+        else:
             names = ranking.recognition.arguments.get(hits[0].id, ())
+            kind = "page" if hits[0].is_page else "schema"
             blocks = self._named(hits, rows, text, names, members)
-            return draft_of("page" if hits[0].is_page else "schema", hits, notes, blocks)
-        return draft_of("candidates", hits, notes, self._found(hits, rows, asked, members))
+        return draft_of(kind, hits, notes, blocks)
 
     def _changes(self, version: str, limit: int) -> Draft:
         """What a version changed as a whole."""
@@ -214,6 +219,41 @@ class AnswerComposer:
         """What the best hit makes with the values that are asked for."""
         symbol = self._reader.symbol(hit.id) if asked.values else None
         return made_with(symbol, asked.values, self._reader) if symbol else iter(())
+
+    def _compared(self, text: str, told: Sequence[str], limit: int) -> list[RankedId]:
+        """The things that a question compares, where the names that are ``told`` are not all of them."""
+        sides = sides_of(text)
+        if not sides or are_told(sides, told):
+            return []
+        return meant_by(sides, lambda asked, about: self._ranker.rank(asked, limit, about), self._reader)
+
+    def _compare(
+        self,
+        text: str,
+        meant: Sequence[RankedId],
+        found: Sequence[RankedId],
+        limit: int,
+        notes: Sequence[str],
+    ) -> Draft:
+        """What each of some things is, then more of each, and what else was ``found``."""
+        told = {row.id for row in meant}
+        rows = [*meant, *(row for row in found if row.id not in told)][:limit]
+        hits = hits_of(rows, self._reader)
+        asked = asked_words(text)
+        members = self._members.of(text, asked, [row.id for row in meant])
+        blocks: list[AnswerBlock] = []
+        more: list[AnswerBlock] = []
+        for hit, row in zip(hits[: len(meant)], rows, strict=False):
+            head, *rest = self._blocks.excerpt(hit, row._replace(members=()))
+            blocks.append(head)
+            more += [AnswerBlock(f"### `{hit.id}`", hit.id), *rest] if rest else ()
+        blocks += self._lines.asked_members(hits[0], [path for path in members if path not in told])
+        others = [place for place in range(len(meant), len(hits)) if hits[place].id not in members]
+        blocks += more
+        blocks += self._lines.further(
+            [hits[place] for place in others], [rows[place] for place in others], asked
+        )
+        return draft_of("candidates", hits, notes, blocks)
 
     def _answer_each(self, parts: Sequence[QuestionPart], ranking: Ranking, limit: int) -> Draft:
         """The names and the page for each part of a question, in brief."""

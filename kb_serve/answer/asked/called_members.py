@@ -67,6 +67,7 @@ class _Member(NamedTuple):
     name: str
     short: str
     is_fixed: bool
+    is_deprecated: bool
     called: tuple[tuple[str, ...], ...]
 
 
@@ -112,8 +113,8 @@ class CalledMembers:
         would cost more than to look through these.
         """
         sql = """SELECT path, kind, type, name, label, marks FROM symbols WHERE owner = ? AND grp != 'ui'
-            AND kind IN ('property', 'function', 'socket') AND NOT marks & ? ORDER BY id"""
-        rows = self._reader.rows(sql, cls, _DEPRECATED)
+            AND kind IN ('property', 'function', 'socket') ORDER BY id"""
+        rows = self._reader.rows(sql, cls)
         return [(row, f"{row[3]} {row[4]}".lower()) for row in rows if not row[3].startswith(_MACHINERY)]
 
 
@@ -126,7 +127,7 @@ def _member(row: _Row) -> _Member:
     is_fixed = kind == "property" and held not in _HELD and bool(marks & _FIXED)
     texts = (label,) if is_socket else (name, label)
     called = dict.fromkeys(filter(None, (tuple(terms(text)) for text in texts)))
-    return _Member(path, name, short, is_fixed, tuple(called))
+    return _Member(path, name, short, is_fixed, bool(marks & _DEPRECATED), tuple(called))
 
 
 def _beginnings(stems: Iterable[str]) -> tuple[str, ...]:
@@ -157,6 +158,8 @@ def _called(member: _Member, called: Sequence[str], asked: AskedWords) -> Called
         return None
     is_name = member.name in asked.written
     is_written = is_name and "_" in member.name
+    if member.is_deprecated and not is_written:
+        return None
     counts += _AS_WRITTEN if is_written else _WORD_AS_WRITTEN if is_name else 0.0
     is_name = is_name or member.short in asked.written
     return CalledMember(member.path, frozenset(said), counts, is_name, is_written)

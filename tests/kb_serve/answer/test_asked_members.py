@@ -8,6 +8,9 @@ import pytest
 
 from kb_serve.answer.asked.members import AskedMembers
 from kb_serve.answer.facts.asked_values import asked_words
+from kb_serve.answer.hit_lines import HitLines
+from kb_serve.answer.hits import hits_of
+from kb_serve.rank.ranked_id import RankedId
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
@@ -38,7 +41,7 @@ def asked(question: str, kb: KnowledgeBase, *ids: str) -> list[str]:
         (
             "cloth pressure scale, fluid density",
             ["ClothSettings"],
-            ["ClothSettings.pressure_factor", "ClothSettings.fluid_density"],
+            ["ClothSettings.pressure_factor", "ClothSettings.fluid_density", "ClothSettings.use_pressure"],
         ),
         (
             "grease pencil layer opacity and lights",
@@ -89,10 +92,10 @@ def test_words_by_chance_ask_for_none(question: str, ids: list[str], kb: Knowled
 
 
 def test_behind_a_page_they_are_the_first_names(kb: KnowledgeBase) -> None:
-    text = kb.query("metaball threshold resolution update method").text
-    names = text.partition("**In Python**\n")[2].split("\n")
-    for name, line in zip(("threshold", "resolution", "update_method"), names, strict=False):
-        assert f"`{T}MetaBall.{name}`" in line
+    rows = [RankedId(f"{T}ClothSettings.mass", 1.0, "found")]
+    first = f"{T}ClothSettings.quality"
+    (block,) = HitLines(kb.reader).further(hits_of(rows, kb.reader), rows, first=[first])
+    assert [line.split("`")[1] for line in block.text.split("\n")[1:]] == [first, f"{T}ClothSettings.mass"]
 
 
 def test_beside_another_member_they_stand_before_its_values(kb: KnowledgeBase) -> None:
