@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from kb_build.index.analysis import stems_of
 from kb_build.symbols.api_names import TYPES
+from kb_serve.answer.asked.animated import animated
 from kb_serve.answer.asked.members import AskedMembers
 from kb_serve.answer.asked.sides import are_told, meant_by, sides_of
 from kb_serve.answer.budget import AnswerBlock, tokens
@@ -181,6 +182,7 @@ class AnswerComposer:
         whole = self._blocks.whole(hits[0], rows[0], asked_of((), arguments if given else ()))
         yield from islice(whole, 1)
         first = members if hits[0].is_page else ()
+        yield from self._animated(asked_words(text), hits, members)
         yield from self._lines.asked_members(hits[0], () if first else members)
         others = [*self._lines.further(*_but(members, hits, rows), first=first)]
         yield from _names_before_long(whole, others)
@@ -206,6 +208,7 @@ class AnswerComposer:
         first = members if hits[0].is_page else ()
         others = [*self._lines.further(*_but(members, hits, rows), asked, first=first)]
         yield next(excerpt)
+        yield from self._animated(asked, hits, members)
         yield from self._lines.asked_members(hits[0], () if first else members)
         yield from told
         yield from self._made(hits[0], asked_of(found))
@@ -214,6 +217,12 @@ class AnswerComposer:
             others = [block for block in others if block.name != NAMES]
         yield from excerpt
         yield from others
+
+    def _animated(
+        self, asked: Sequence[str], hits: Sequence[Hit], members: Sequence[str]
+    ) -> Iterator[AnswerBlock]:
+        """How the best hit is animated, or a member that is asked for."""
+        return animated(asked, (hits[0].id, *members), (hit.id for hit in hits), self._reader)
 
     def _made(self, hit: Hit, asked: AskedOf) -> Iterator[AnswerBlock]:
         """What the best hit makes with the values that are asked for."""

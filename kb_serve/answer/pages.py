@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from kb_build.pages.definitions import with_names
@@ -20,6 +21,9 @@ _SHORT_PAGE = 80  # letters
 _OUTLINE = 16  # sections that a heading lists
 # What the manual says of a setting may be true of one engine only.
 ENGINES = {"render/eevee/": "EEVEE", "render/cycles/": "Cycles", "render/workbench/": "Workbench"}
+_OF_ANGLES = "ROTATION"  # RNA's unit of radians
+_DEGREES = re.compile(r"\d\s*°|\bdegrees?\b", re.IGNORECASE)
+_IN_DEGREES = " · it speaks of degrees, as the window shows them: a script sets radians"
 MANUALS_WORDS = "the manual's words"  # what the block is called
 
 
@@ -59,12 +63,13 @@ def _page_line(page: PageEntry, reader: BaseReader) -> str:
     return f"- `{page.slug}` ({page.title}) {first_sentence(said_of(page, reader))}".rstrip()
 
 
-def passage_block(path: str, reader: BaseReader) -> Iterator[AnswerBlock]:
-    """What the manual says about a symbol."""
+def passage_block(path: str, reader: BaseReader, unit: str = "") -> Iterator[AnswerBlock]:
+    """What the manual says about a symbol, and in which ``unit`` a script sets it where the window shows another."""
     slug, headings, text = reader.manual.passage_text(path)
     if text:
         engine = next((f"{name} › " for start, name in ENGINES.items() if slug.startswith(start)), "")
-        yield AnswerBlock(f"**In the manual** ({engine}{headings})\n{text}", MANUALS_WORDS)
+        aside = _IN_DEGREES if unit == _OF_ANGLES and _DEGREES.search(text) else ""
+        yield AnswerBlock(f"**In the manual** ({engine}{headings}){aside}\n{text}", MANUALS_WORDS)
 
 
 def said_of(page: PageEntry, reader: BaseReader) -> str:

@@ -9,8 +9,8 @@ from kb_build.symbols.api_names import SIDES, STRUCT, TYPES
 from kb_build.symbols.flags import is_stand_in
 from kb_build.symbols.lines import fatal_lines, mode_needed, poll_line, version_meant, written
 from kb_build.symbols.records import BARE_DATA, PAIRS, STATIC
-from kb_serve.answer.budget import AnswerBlock
-from kb_serve.answer.facts.arguments import argument_lines, arguments, operator_call
+from kb_serve.answer.budget import AnswerBlock, tokens
+from kb_serve.answer.facts.arguments import VALUES_OF, argument_lines, arguments, operator_call
 from kb_serve.answer.facts.asked_values import ASKED_NOTHING
 from kb_serve.answer.facts.conditions import condition_lines
 from kb_serve.answer.facts.enum_items import item_lines
@@ -41,6 +41,7 @@ _BARE_DATA = (
     "This Blender has no class for the data of the object that it adds: nothing in them can be read or set."
 )
 _FEW_PARAMETERS = 8
+_LONG_LIST = 400  # tokens of the values of an argument from which on its use goes before them
 _CONSTRUCTOR = "__init__"  # called as the class itself is
 
 
@@ -59,6 +60,12 @@ def _listed(title: str, entries: Iterable[SymbolEntry], last: str = "") -> Itera
 def _functions(members: Iterable[SymbolEntry]) -> list[SymbolEntry]:
     """The functions among a class's members, without those that every class has."""
     return [entry for entry in members if entry.kind == "function" and not entry.name.startswith("bl_rna_")]
+
+
+def _is_long_list(block: AnswerBlock, asked: AskedOf) -> bool:
+    """Whether a block lists very many values of an argument, of which none is asked for."""
+    argument = block.name.removeprefix(VALUES_OF)
+    return argument != block.name and argument not in asked.values and tokens(block.text) > _LONG_LIST
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,8 +97,11 @@ class MarkdownRenderer:
             if used.text:
                 yield used
             yield from self._class(symbol.path, members)
-        else:
-            yield from self._before_values(symbol, asked)
+        late: list[AnswerBlock] = []
+        if symbol.kind != "class":
+            blocks = [*self._before_values(symbol, asked)]
+            late = [block for block in blocks if _is_long_list(block, asked)]
+            yield from (block for block in blocks if block not in late)
         if is_stand_in(symbol):
             yield AnswerBlock(f"**Values**\n{_PUT_TOGETHER}", "values")
         elif symbol.enum_items:
@@ -100,9 +110,10 @@ class MarkdownRenderer:
         if symbol.kind == "socket":
             yield from _listed(f"Others called {symbol.label}", self._namesakes(symbol))
         if symbol.kind != "class":
-            yield from passage_block(symbol.path, self.reader)
+            yield from passage_block(symbol.path, self.reader, unit=symbol.unit)
             if used.text:
                 yield used
+        yield from late
 
     def _before_values(self, symbol: Symbol, asked: AskedOf) -> Iterator[AnswerBlock]:
         """What is taken, held or led to by what is no class."""

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.index.analysis import terms
 from kb_build.schema import Mark
 from kb_build.symbols.api_names import ID, STRUCT
+from kb_build.symbols.paths import socket_side
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -30,6 +31,18 @@ KINDS = frozenset({"property", "function", "socket"})
 OF_SWITCHES = frozenset({"has", "is", "show", "use"})
 _FIXED, _DEPRECATED = int(Mark.READ_ONLY), int(Mark.DEPRECATED)
 _HELD = frozenset({"collection", "pointer"})  # which no script sets anyway
+# The type of a socket → how a question calls it.
+_SOCKET_TYPES = {
+    "boolean": ("boolean",),
+    "int": ("integer", "int"),
+    "matrix": ("matrix",),
+    "rgba": ("color",),
+    "rotation": ("rotation",),
+    "string": ("string",),
+    "value": ("float",),
+    "vector": ("vector",),
+}
+_SIDES = {"input": "inputs", "output": "outputs"}  # as their stems
 _MACHINERY = ("bl_rna", "rna_")
 _Row = tuple[str, str, str, str, str, int]  # path, kind, type, name, label, marks
 _SHORT = 3  # letters of words that are their own stems
@@ -40,6 +53,7 @@ class AskedWords(NamedTuple):
     """What a question says: the places of its words (stems), and its words and names as they are written."""
 
     places: Mapping[str, Sequence[int]]
+    sides: frozenset[str]  # of nodes
     written: frozenset[str]
     beginnings: Sequence[str]
 
@@ -68,6 +82,7 @@ class _Member(NamedTuple):
     short: str
     is_fixed: bool
     is_deprecated: bool
+    side: str  # of a socket
     called: tuple[tuple[str, ...], ...]
 
 
@@ -80,12 +95,13 @@ class CalledMembers:
 
     def of(self, cls: str, asked: AskedWords) -> Iterator[tuple[CalledMember, bool]]:
         """The members of a class that a question calls by all words of their names or labels, and whether they are the
-        class's own; of one that is called by both, by its name.
+        class's own; of one that is called by both, by its name. Sockets are called by their types and sides as well.
         """
         seen: set[str] = set()
         for owner, row in self._like(cls, asked.beginnings):
             member = _member(row)
-            called = next(filter(None, (_called(member, own, asked) for own in member.called)), None)
+            fits = filter(None, (_called(member, own, asked) for own in member.called))
+            called = max(fits, key=lambda one: one.counts, default=None) if member.side else next(fits, None)
             name = member.path[len(owner) :]
             if called is not None and name not in seen:
                 seen.add(name)
@@ -115,7 +131,14 @@ class CalledMembers:
         sql = """SELECT path, kind, type, name, label, marks FROM symbols WHERE owner = ? AND grp != 'ui'
             AND kind IN ('property', 'function', 'socket') ORDER BY id"""
         rows = self._reader.rows(sql, cls)
-        return [(row, f"{row[3]} {row[4]}".lower()) for row in rows if not row[3].startswith(_MACHINERY)]
+        return [(row, _text(row)) for row in rows if not row[3].startswith(_MACHINERY)]
+
+
+def _text(row: _Row) -> str:
+    """What has all words by which a member may be called."""
+    path, kind, held, name, label, _ = row
+    more = (*_SOCKET_TYPES.get(held, ()), socket_side(path)) if kind == "socket" else ()
+    return " ".join((name, label, *more)).lower()
 
 
 @lru_cache(maxsize=1_000)
@@ -125,9 +148,12 @@ def _member(row: _Row) -> _Member:
     begin, _, rest = name.partition("_")
     short = label.lower() if is_socket else rest if begin in OF_SWITCHES else name
     is_fixed = kind == "property" and held not in _HELD and bool(marks & _FIXED)
-    texts = (label,) if is_socket else (name, label)
+    side = socket_side(path) if is_socket else ""
+    texts = (
+        (label, *(f"{kind} {side}" for kind in _SOCKET_TYPES.get(held, ()))) if is_socket else (name, label)
+    )
     called = dict.fromkeys(filter(None, (tuple(terms(text)) for text in texts)))
-    return _Member(path, name, short, is_fixed, bool(marks & _DEPRECATED), tuple(called))
+    return _Member(path, name, short, is_fixed, bool(marks & _DEPRECATED), side, tuple(called))
 
 
 def _beginnings(stems: Iterable[str]) -> tuple[str, ...]:
@@ -141,12 +167,15 @@ def read_question(question: str, stems: Sequence[str]) -> AskedWords:
     for place, word in enumerate(stems):
         places[word].append(place)
     written = frozenset((*_TOKEN.findall(question), *_TOKEN.findall(question.lower())))
-    return AskedWords(places, written, _beginnings(places))
+    sides = frozenset(side for word, side in _SIDES.items() if word in places)
+    return AskedWords(places, sides, written, _beginnings(places))
 
 
 def _called(member: _Member, called: Sequence[str], asked: AskedWords) -> CalledMember | None:
     """The member, if a question calls it by some words."""
     places = asked.places
+    if member.side and asked.sides and member.side not in asked.sides:
+        return None
     said = [word for word in called if word in places or word not in OF_SWITCHES]
     if not said or not all(word in places for word in said):
         return None

@@ -170,7 +170,7 @@ class _Choice:
         of_class = _words_in(cls)
         for one in found:
             before = self._told.get(last_name(one.path))
-            if before is not None and not self._says(cls, before):
+            if before is not None and not self._says(cls, before, one.words):
                 continue
             is_new = any(self.left[word] > 0 for word in one.words - of_class)
             if is_new or one.is_written or before is not None:
@@ -193,9 +193,9 @@ class _Choice:
         """Whether a question is about a class by what heads its answer, or has a word of the class's name."""
         return cls == self._class or not _words_in(cls).isdisjoint({*self.asked.places, *self.subject})
 
-    def _says(self, cls: str, other: str) -> bool:
-        """Whether a question has a word of a class's name that the name of another has not."""
-        return not (_words_in(cls) - _words_in(other)).isdisjoint(self.asked.places)
+    def _says(self, cls: str, other: str, of_member: frozenset[str] = frozenset()) -> bool:
+        """Whether a question has a word of a class's name that the name of another has not, nor a member."""
+        return not (_words_in(cls) - _words_in(other) - of_member).isdisjoint(self.asked.places)
 
 
 def _words_in(cls: str) -> frozenset[str]:

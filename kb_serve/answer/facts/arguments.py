@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from kb_build.symbols.records import Parameter, Symbol
     from kb_serve.answer.facts.asked_values import AskedOf
 
+VALUES_OF = "values of "  # what begins the name of a block of them
 _PARAGRAPH = "\n\n"
 _NAMED_ITEMS = 40  # enum items in an argument's own line; the full list follows
 _MOST_ITEMS = 500  # that are listed one by one
@@ -60,7 +61,7 @@ def arguments(symbol: Symbol, asked: AskedOf) -> Iterator[AnswerBlock]:
             items = item_lines(shown, taken_where(symbol, parameter.name), wanted)
             yield AnswerBlock(
                 f"**Values of `{parameter.name}`**\n{items}",
-                f"values of {parameter.name}",
+                VALUES_OF + parameter.name,
             )
 
 

@@ -108,3 +108,30 @@ def test_beside_another_member_they_stand_before_its_values(kb: KnowledgeBase) -
 def test_code_says_itself_whose_they_are(kb: KnowledgeBase) -> None:
     text = kb.query('obj.modifiers["Bevel"].width = obj.modifiers["Bevel"].segments').text
     assert "**Asked for**" not in text
+
+
+def test_sockets_are_asked_for_by_type_and_side(kb: KnowledgeBase) -> None:
+    node = "FunctionNodeRandomValue"
+    (found,) = asked("Random Value node integer output socket", kb, node)
+    assert kb.reader.entry(T + found).type == "int"  # pyright: ignore[reportOptionalMemberAccess]
+    assert found.startswith(f"{node}.outputs[")
+    names = asked("Set Position node inputs offset and selection", kb, "GeometryNodeSetPosition")
+    assert names == [f'GeometryNodeSetPosition.inputs["{name}"]' for name in ("Offset", "Selection")]
+
+
+@pytest.mark.parametrize(
+    ("question", "line"),
+    [
+        ("driver on a constraint influence", '.constraints[0].driver_add("influence")`'),
+        ("keyframe the strength of a displace modifier", '.keyframe_insert("strength", frame=1)`'),
+        ("shape key driver from script", '.active_shape_key.driver_add("value")`'),
+    ],
+)
+def test_it_is_told_how_what_is_asked_for_is_animated(question: str, line: str, kb: KnowledgeBase) -> None:
+    (told,) = (one for one in kb.query(question).text.split("\n") if one.startswith("animated by `"))
+    assert told.endswith(line)
+
+
+@pytest.mark.parametrize("question", ["strength of a displace modifier", "turn physics motion to keyframes"])
+def test_what_is_not_named_or_not_animated_has_no_such_line(question: str, kb: KnowledgeBase) -> None:
+    assert "animated by `" not in kb.query(question).text

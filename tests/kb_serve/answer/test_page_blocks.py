@@ -126,3 +126,12 @@ def test_names_stand_beside_the_term_that_they_are_of(line: str, expected: str) 
     assert with_names(f"Above.\n{line}\nBelow.", 3, {(3, 1): "`'X'`", (2, 0): "`'Y'`"}) == (
         f"Above.\n{expected}\nBelow."
     )
+
+
+def test_beside_degrees_stands_that_scripts_set_radians(base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with KnowledgeBase(base) as kb:
+        for text, is_told in (("From 1.0° to 180.0°.", True), ("A wide beam.", False)):
+            monkeypatch.setattr(kb.reader, "passage_text", lambda _, text=text: ("lights", "Spot", text))
+            for unit in ("ROTATION", "LENGTH"):
+                (block,) = pages.passage_block("bpy.types.SpotLight.spot_size", kb.reader, unit)
+                assert ("a script sets radians" in block.text) == (is_told and unit == "ROTATION")

@@ -518,3 +518,8 @@ def test_a_class_that_scripts_call_tells_what_it_takes(kb: KnowledgeBase) -> Non
     assert "- `type` (enum, required)" in parameters
     assert "one of 'POINTS', 'LINES', 'TRIS'" in parameters
     assert "`__init__" not in functions
+
+
+def test_the_use_of_a_function_comes_before_very_many_values_of_an_argument(kb: KnowledgeBase) -> None:
+    text = kb.query("bpy.types.KeyMapItems.new", max_tokens=ALL).text
+    assert text.index("**Used**") < text.index("**Values of `type`**")
