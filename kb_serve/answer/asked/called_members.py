@@ -118,20 +118,23 @@ class CalledMembers:
         """
         for ancestor in self._reader.lineage(cls):
             if ancestor.path == cls or ancestor.path not in {ID, STRUCT}:
-                for row, text in self._members(ancestor.path):
-                    for beginning in beginnings:
-                        if beginning in text:
+                rows, texts, text = self._members(ancestor.path)
+                there = [beginning for beginning in beginnings if beginning in text]
+                for row, own in zip(rows, texts, strict=True) if there else ():
+                    for beginning in there:
+                        if beginning in own:
                             yield ancestor.path, row
                             break
 
-    def _read_members(self, cls: str) -> list[tuple[_Row, str]]:
-        """The members of a class itself, with their names and labels in small letters: to take the words of all apart
-        would cost more than to look through these.
+    def _read_members(self, cls: str) -> tuple[list[_Row], list[str], str]:
+        """The members of a class itself, with what they are called by in small letters, each and together: to take the
+        words of all apart would cost more than to look through these.
         """
         sql = """SELECT path, kind, type, name, label, marks FROM symbols WHERE owner = ? AND grp != 'ui'
             AND kind IN ('property', 'function', 'socket') ORDER BY id"""
-        rows = self._reader.rows(sql, cls)
-        return [(row, _text(row)) for row in rows if not row[3].startswith(_MACHINERY)]
+        rows = [row for row in self._reader.rows(sql, cls) if not row[3].startswith(_MACHINERY)]
+        texts = [*map(_text, rows)]
+        return rows, texts, "\n".join(texts)
 
 
 def _text(row: _Row) -> str:
