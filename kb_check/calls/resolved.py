@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import ast
 from typing import TYPE_CHECKING
 
+from kb_build.flow.values.types import Builtin
 from kb_build.symbols.api_names import OPERATORS
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
-    import ast
     import re
 
     from kb_check.script import Script
@@ -28,6 +29,15 @@ def callee_path(script: Script, call: ast.Call) -> str:
     """The path of the one thing of the API that a call surely calls; empty for none."""
     row = script.analysis.resolutions.get(call)
     return row.symbols[0] if row and row.kind == "call" and len(row.symbols) == 1 and row.sure else ""
+
+
+def builtin_called(script: Script, call: ast.Call) -> str:
+    """The name of the one of Python's own functions that a call surely calls by this name; empty for none."""
+    match call.func:
+        case ast.Name(id=name) as callee if script.type_of(callee) == Builtin(name):
+            return name
+        case _:
+            return ""
 
 
 @once_per_script

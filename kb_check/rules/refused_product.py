@@ -35,8 +35,9 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.blender.facts import PRODUCTS
-from kb_build.flow.values.types import Builtin, Instance, Sequence, Tuple
+from kb_build.flow.values.types import Instance, Sequence, Tuple
 from kb_build.symbols.paths import last_name
+from kb_check.calls.resolved import builtin_called
 from kb_check.calls.sites import nothing_from, other_way
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.rule import Rule
@@ -111,9 +112,7 @@ def _sums(script: Script) -> Iterator[Finding]:
     """``sum`` of vectors, which begins with the number 0 unless it is told otherwise."""
     for call in script.all(ast.Call):
         match call:
-            case ast.Call(func=ast.Name(id="sum") as callee, args=[added], keywords=[]) if script.type_of(
-                callee
-            ) == Builtin("sum"):
+            case ast.Call(args=[added], keywords=[]) if builtin_called(script, call) == "sum":
                 cls = _summed(script, added)
             case _:
                 continue

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.api_names import TYPES as T
-from kb_check.calls.resolved import callee_path, member_path
+from kb_check.calls.resolved import builtin_called, callee_path, member_path
 from kb_check.script import once_per_script
 from kb_check.syntax.bindings import alias
 from kb_check.syntax.bodies import places
@@ -99,7 +99,7 @@ def _removes_all(script: Script, loop: ast.For) -> bool:
 def _is_all(script: Script, node: ast.expr) -> bool:
     """Whether an expression is all objects of the file, or of the scene, or a copy of their list."""
     match node:
-        case ast.Call(func=ast.Name(id=name), args=[held]) if name in _COPYING:
+        case ast.Call(args=[held]) as call if builtin_called(script, call) in _COPYING:
             return _is_all(script, held)
         case ast.Subscript(value=held, slice=ast.Slice(lower=None, upper=None, step=None)):
             return _is_all(script, held)

@@ -7,7 +7,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.values.types import UNKNOWN, Builtin, Instance, Plain, Sequence, Tuple, members
+from kb_build.flow.values.types import UNKNOWN, Instance, Plain, Sequence, Tuple, members
+from kb_check.calls.resolved import builtin_called
 from kb_check.running.tried import is_tried
 
 if TYPE_CHECKING:
@@ -54,13 +55,8 @@ def _instances(script: Script, node: ast.expr) -> Iterator[tuple[ast.expr, str]]
 
 def _of_ranges(script: Script) -> Iterator[tuple[ast.expr, str]]:
     for call in script.all(ast.Call):
-        match call:
-            case ast.Call(func=ast.Name(id="range") as callee, args=bounds) if script.type_of(
-                callee
-            ) == Builtin("range"):
-                yield from ((bound, "`range` takes") for bound in bounds)
-            case _:
-                pass
+        if builtin_called(script, call) == "range":
+            yield from ((bound, "`range` takes") for bound in call.args)
 
 
 def _indices(script: Script) -> Iterator[tuple[ast.expr, str]]:

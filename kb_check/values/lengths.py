@@ -18,8 +18,8 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.blender.api import ARRAY
-from kb_build.flow.values.types import UNKNOWN, Builtin, Instance, Tuple, members
-from kb_check.calls.resolved import member_path
+from kb_build.flow.values.types import UNKNOWN, Instance, Tuple, members
+from kb_check.calls.resolved import builtin_called, member_path
 from kb_check.syntax.literals import number
 from kb_check.values.documented import LENGTHS
 from kb_check.values.mathutils_sizes import size_of
@@ -54,13 +54,9 @@ def length_of(  # noqa: PLR0911 - one return an expression
         case ast.BinOp(left=left, op=ast.Mult(), right=right) if isinstance(left, (ast.List, ast.Tuple)):
             once, times = length_of(script, left, depth - 1), number(script, right)
             return once * max(times, 0) if once is not None and isinstance(times, int) else None
-        case ast.Call(func=ast.Name(id=name) as callee, args=[copied], keywords=[]) if (
-            name in _COPYING and script.type_of(callee) == Builtin(name)
-        ):
+        case ast.Call(args=[copied], keywords=[]) as call if builtin_called(script, call) in _COPYING:
             return length_of(script, copied, depth - 1)
-        case ast.Call(func=ast.Name(id="range") as callee, args=bounds) if script.type_of(callee) == Builtin(
-            "range"
-        ):
+        case ast.Call(args=bounds) as call if builtin_called(script, call) == "range":
             return _of_range(script, bounds)
         case ast.Call(func=ast.Attribute(value=ast.Name(id="colorsys"), attr=name)) if name in _OF_COLORS:
             return _OF_COLOR
@@ -91,8 +87,8 @@ def is_iterator(script: Script, node: ast.expr) -> bool:
     match node:
         case ast.GeneratorExp():
             return True
-        case ast.Call(func=ast.Name(id=name) as callee):
-            return name in _ENDLESS and script.type_of(callee) == Builtin(name)
+        case ast.Call() as call:
+            return builtin_called(script, call) in _ENDLESS
         case _:
             return False
 
