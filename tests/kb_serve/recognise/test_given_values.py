@@ -93,6 +93,11 @@ def test_the_likeliest_value_points_the_same_way() -> None:
     axes = ("X", "Y", "Z", "NEGATIVE_X", "NEGATIVE_Y", "NEGATIVE_Z")
     assert likely_values("-Y", axes) == ["NEGATIVE_Y"]
     assert likely_values("FORWARD_NEGATIVE_Z", ("TRACK_Z", "TRACK_NEGATIVE_Z")) == ["TRACK_NEGATIVE_Z"]
+    domains = ("POINT", "EDGE", "FACE", "CORNER", "CURVE", "INSTANCE", "LAYER")
+    assert likely_values("VERTEX", domains) == ["POINT"]
+    assert likely_values("LOOP", domains) == ["CORNER"]
+    assert likely_values("POLYGON", domains) == ["FACE"]
+    assert likely_values("VERTEX", ("VERT", "EDGE", "FACE")) == ["VERT"]
 
 
 def test_the_likeliest_argument_says_most_of_the_same() -> None:

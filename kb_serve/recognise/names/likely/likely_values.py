@@ -21,6 +21,12 @@ _TELLING = 2  # words of a label that other texts have
 _SHORT = 3  # … of a wrong one that an item begins with
 _OF = " - "
 _OPPOSITES = frozenset({"neg", "negative"})
+# The parts that attributes are kept on, as they are called elsewhere.
+_DOMAINS = {
+    "POINT": frozenset({"VERT", "VERTEX", "VERTICES", "VERTS"}),
+    "CORNER": frozenset({"FACE_CORNER", "LOOP", "LOOPS"}),
+    "FACE": frozenset({"POLY", "POLYGON", "POLYGONS"}),
+}
 _MINUS = re.compile(r"-(?=[XYZ]$)")
 
 
@@ -46,7 +52,7 @@ def likely_values(written: str, items: Sequence[str]) -> list[str]:
     written = _MINUS.sub("NEGATIVE_", written)
     if same := same_elsewhere(written, items) or _of_same_letters(written, items):
         return same
-    if same := _of_same_sense(written, items):
+    if same := _of_same_sense(written, items) or _of_same_part(written, items):
         return same
     items = [*_without_opposites(written, items)]
     said = written.upper()
@@ -68,6 +74,13 @@ def likely_values(written: str, items: Sequence[str]) -> list[str]:
 def _of_same_letters(written: str, items: Sequence[str]) -> list[str]:
     """The items that are spelled otherwise alone: ``EVENT_BACKSLASH`` for ``EVENT_BACK_SLASH``."""
     return [item for item in items if key(item) == key(written)]
+
+
+def _of_same_part(written: str, items: Sequence[str]) -> list[str]:
+    """The domain of attributes that is called otherwise elsewhere: ``POINT`` for ``VERTEX``."""
+    if written in items or not _DOMAINS.keys() <= {*items}:
+        return []
+    return [item for item, names in _DOMAINS.items() if written.upper() in names]
 
 
 def _with_alike(said: str, similar: list[str], items: Iterable[str]) -> list[str]:
