@@ -9,6 +9,8 @@ bpy.app.handlers.load_post.add(follow)  # reported: append
 bpy.context.selected_objects.location  # reported: each of them has one
 quaternion.to_axis_angle().x  # reported: a tuple of the axis and the angle
 obj.children.append(child)  # reported: a tuple, which nothing is added to
+scene["sizes"] = [1, 2]
+scene["sizes"].append(3)  # reported: such a custom property is an array
 ```
 
 Not reported: what stands in a ``try`` that catches AttributeError, and names that the script asks for by a text.
@@ -27,6 +29,7 @@ from kb_check.running.raised import LACKS
 from kb_check.running.tried import is_tried
 from kb_check.syntax.bindings import once_bound
 from kb_check.syntax.words import words_in_texts
+from kb_check.values.custom_values import is_number_array
 from kb_check.values.misfits import describe
 from kb_serve.recognise.names.elsewhere.elements import elsewhere
 
@@ -36,6 +39,8 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _ADDING = "bpy.types.bpy_struct.driver_add"
+_OF_ARRAY = frozenset({"to_list", "typecode"})
+_GROWING = frozenset({"append", "extend", "insert"})
 _LONGEST = 60  # expression that is shown
 
 
@@ -50,7 +55,8 @@ def _check(script: Script) -> Iterator[Finding]:
                 name,
             )  # fmt: skip
             continue
-        if (told := _told(script, node)) and not is_tried(script, node, LACKS):
+        told = _told(script, node) or _of_array(script, node)
+        if told and not is_tried(script, node, LACKS):
             yield Finding(RULE.id, "error", script.name_span(node), told)
 
 
@@ -78,6 +84,18 @@ def _told(script: Script, node: ast.Attribute) -> str:
             return f"`{_short(source)}` is a tuple, which has no `{node.attr}`. It holds {held}."
         case _:
             return ""
+
+
+def _of_array(script: Script, node: ast.Attribute) -> str:
+    """The same of a custom property that keeps the numbers of a list: an array, whose length never changes."""
+    has_it = node.attr in _OF_ARRAY or node.attr.startswith("__")
+    if has_it or node.attr in words_in_texts(script) or not is_number_array(script, node.value):
+        return ""
+    whole = _short(once_bound(script, node.value))
+    advice = (
+        f"Assign a new list: `{whole} = [*{whole}, …]`." if node.attr in _GROWING else "It has `to_list`."
+    )
+    return f"`{whole}` is an array of numbers, which has no `{node.attr}`. {advice}"
 
 
 def _has(kind: Type, name: str) -> bool:

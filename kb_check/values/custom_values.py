@@ -35,6 +35,8 @@ from kb_build.flow.values.types import (
     members,
 )
 from kb_build.symbols.api_names import GROUPS, STRUCT
+from kb_check.script import once_per_script
+from kb_check.syntax.bindings import once_bound
 from kb_check.values.lengths import is_iterator
 
 if TYPE_CHECKING:
@@ -56,6 +58,51 @@ def refused_value(script: Script, target: ast.Subscript, value: ast.expr) -> str
         return "an iterator"
     told = {_refused(kind) for kind in members(script.type_of(value) or UNKNOWN)}
     return told.pop() if len(told) == 1 else ""
+
+
+def is_number_array(script: Script, node: ast.expr) -> bool:
+    """Whether an expression surely reads a custom property that keeps an array: of the numbers of a list.
+
+    That is known where the script gives nothing else to a property of this name.
+    """
+    match once_bound(script, node):
+        case ast.Subscript(value=owner, slice=ast.Constant(value=str(key)), ctx=ast.Load()):
+            given = _given(script).get(key, [])
+            is_property = _keeps_properties(script, script.type_of(owner))
+            return is_property and bool(given) and all(_is_row(script, value) for value in given)
+        case _:
+            return False
+
+
+@once_per_script
+def _given(script: Script) -> dict[str, list[ast.expr | None]]:
+    """Key → what assignments give to it, in whatever; None where that is not one expression."""
+    found: dict[str, list[ast.expr | None]] = {}
+    for part in script.all(ast.Subscript):
+        key = part.slice.value if isinstance(part.slice, ast.Constant) else None
+        if isinstance(key, str) and not isinstance(part.ctx, ast.Load):
+            found.setdefault(key, []).append(_assigned_to(script).get(part))
+    return found
+
+
+@once_per_script
+def _assigned_to(script: Script) -> dict[ast.expr, ast.expr]:
+    return {target: node.value for node in script.all(ast.Assign) for target in node.targets}
+
+
+def _is_row(script: Script, value: ast.expr | None) -> bool:
+    """Whether a value surely is a list of numbers."""
+    match script.type_of(value) if value is not None else None:
+        case Tuple(items=items):
+            return bool(items) and all(map(_is_number, items))
+        case Sequence(kind="list" | "tuple", element=element, is_empty=False):
+            return _is_number(element)
+        case _:
+            return False
+
+
+def _is_number(kind: Type) -> bool:
+    return isinstance(kind, Plain) and kind.kind in _NUMBERS | {"bool"}
 
 
 def _keeps_properties(script: Script, owner: Type | None) -> bool:

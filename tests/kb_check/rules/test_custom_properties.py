@@ -232,3 +232,34 @@ def test_geometry_nodes_modifiers_have_them_where_their_inputs_are_keys(
     lines = _OF_MODIFIER.splitlines()[:11]
     assert [error for error, *_ in run_statements(tmp_path, lines) if error] == []
     assert rule_checker.check("\n".join(lines), rules=["no-custom-properties"]) == []
+
+
+_ARRAYS = {
+    "scene['sizes'].append(3)": True,
+    "sizes = scene['sizes']\nsizes.extend((3, 4))": True,
+    "print(scene['color'].x)": True,
+    "print(scene['made'].index_of)": True,
+    "print(scene['sizes'].to_list(), scene['sizes'].typecode)": False,
+    "scene['sizes'][0] = 4": False,
+    "print(scene['names'].append('c'))": False,
+    "scene['mixed'].append(3)": False,
+    "held['sizes'].append(3)": False,
+}
+_KEPT = """\
+import bpy
+scene = bpy.context.scene
+scene["sizes"] = [1, 2]
+scene["color"] = (1.0, 0.5, 0.0)
+scene["made"] = [one for one in range(3)]
+scene["names"] = ["a", "b"]
+scene["mixed"] = [1, 2]
+scene["mixed"] = ["a"]
+held = {}
+held["sizes"] = [1]
+"""
+
+
+def test_the_numbers_of_a_list_are_kept_as_an_array(rule_checker: Checker, tmp_path: Path) -> None:
+    done = run_statements(tmp_path, [f"{_KEPT}{line}" for line in _ARRAYS])
+    found = [bool(rule_checker.check(f"{_KEPT}{line}\n", rules=["list-attribute"])) for line in _ARRAYS]
+    assert found == [bool(error) for error, *_ in done] == [*_ARRAYS.values()]
