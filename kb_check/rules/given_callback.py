@@ -80,6 +80,7 @@ _OTHERS: dict[type[Type], str] = {
     LocalFunction: "a method", LocalInstance: "an instance of a class", NoneValue: "None", Operator: "an operator",
 }  # fmt: skip
 _PARTIAL = frozenset({"functools.partial", "partial"})
+_PARTIAL_TYPE = Builtin("functools.partial")
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -134,7 +135,7 @@ def _other(script: Script, node: ast.expr) -> str:
         return ""
     source = once_bound(script, node)
     if isinstance(source, ast.Call) and ast.unparse(source.func) in _PARTIAL:
-        return "a `functools.partial`" if script.type_of(source.func) == UNKNOWN else ""
+        return "a `functools.partial`" if script.type_of(source.func) in {UNKNOWN, _PARTIAL_TYPE} else ""
     if _gives_none(script, node):
         return "None"
     found = {_in_words(kind) for kind in members(script.type_of(node) or UNKNOWN)}

@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.flow.values.types import NONE, UNKNOWN, Collection, Instance, members
+from kb_build.flow.values.types import NONE, UNKNOWN, Collection, Instance, LocalInstance, members
 from kb_build.symbols.api_names import STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import plain_path
@@ -172,10 +172,13 @@ def _settings_of_buttons(script: Script) -> Iterator[Given]:
 
 
 def is_of_instance(script: Script, node: ast.AST) -> bool:
-    """Whether an attribute's owner is an instance, not a class: those take new properties."""
+    """Whether an attribute's owner is an instance, not a class: those take new properties.
+
+    An instance of a class of the script's has what it inherits from a class of the API.
+    """
     owner = script.type_of(node.value) if isinstance(node, ast.Attribute) else None
     kinds = [kind for kind in members(owner or UNKNOWN) if kind != NONE]
-    return bool(kinds) and all(isinstance(kind, (Instance, Collection)) for kind in kinds)
+    return bool(kinds) and all(isinstance(kind, (Instance, Collection, LocalInstance)) for kind in kinds)
 
 
 def assigned(statement: ast.stmt | None, target: ast.expr) -> ast.expr | None:

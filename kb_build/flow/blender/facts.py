@@ -46,8 +46,10 @@ API_MODULES = frozenset({"bpy", "mathutils", "bmesh", "gpu", "gpu_extras", "bpy_
 PYTHON_NAMES = frozenset(
     {
         "random", "random.choice", "random.choices", "random.sample",
-        "itertools", "itertools.chain", "itertools.combinations", "itertools.cycle", "itertools.islice",
-        "itertools.permutations", "itertools.product",
+        "functools", "functools.partial",
+        "itertools", "itertools.batched", "itertools.chain", "itertools.combinations", "itertools.cycle",
+        "itertools.dropwhile", "itertools.filterfalse", "itertools.groupby", "itertools.islice", "itertools.pairwise",
+        "itertools.permutations", "itertools.product", "itertools.takewhile", "itertools.tee",
         "collections", "collections.defaultdict", "collections.deque",
         "copy", "copy.copy",
     }

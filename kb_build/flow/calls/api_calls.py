@@ -16,7 +16,7 @@ from kb_build.flow.blender.facts import (
     OPEN_CALLS,
     OPERATOR_PROPERTIES,
 )
-from kb_build.flow.calls.script_calls import ScriptCalls
+from kb_build.flow.calls.callbacks import Callbacks
 from kb_build.flow.evaluation.expressions import CARRYING, constants
 from kb_build.flow.state.core import ANY
 from kb_build.flow.values.types import (
@@ -30,7 +30,9 @@ from kb_build.flow.values.types import (
     Collection,
     Function,
     Instance,
+    LocalClass,
     LocalFunction,
+    LocalInstance,
     Mapping,
     Operator,
     Sequence,
@@ -73,7 +75,7 @@ _KEY = f"{T}KeyMapItem"
 _OPERATOR_RESULT = Sequence("set", STR)
 
 
-class ApiCalls(ScriptCalls):
+class ApiCalls(Callbacks):
     """Evaluates calls of the API."""
 
     def call_operator(self, callee: Operator, call: ReadCall) -> Type:
@@ -115,6 +117,7 @@ class ApiCalls(ScriptCalls):
             for kind in call.arguments:
                 if isinstance(kind, LocalFunction):
                     self.pass_to(kind.number, [Instance(callee.receiver.cls), Instance(f"{T}Context")], {})
+        self.given_to_method(path, call)
         self._names(callee, name, call)
         if name == "context_pointer_set" and call.arguments:
             self.registered[f"{T}Context", literal_text(call.argument(0)) or ANY] = call.argument(1)
@@ -215,11 +218,22 @@ class ApiCalls(ScriptCalls):
         for name in ("type", "socket_type", "effect_type"):
             for value in literal_texts(given[name]) if name in given else ():
                 cls = self.api.class_of_value(result.cls, value)
+                if not cls and is_open and (own := self._own_class(value, result.cls)):
+                    found.append(LocalInstance(own.number))
+                    continue
                 # A value that no class of the API answers to may be that of a script's own class.
                 found.append(
                     replace(result, cls=cls or result.cls, sure=result.sure and bool(cls or not is_open))
                 )
         return union(found) if found else result
+
+    def _own_class(self, name: str, base: str) -> LocalClass | None:
+        """The class of the script that Blender knows by a name, if it derives from one of the API's."""
+        own = self.own_types.get(name)
+        if not isinstance(own, LocalClass):
+            return None
+        bases, known = self.api_bases(own.number)
+        return own if known and any(self.api.descends(cls, base) for cls in bases) else None
 
     @staticmethod
     def _set_up(result: Instance, name: Type) -> Type:
@@ -271,9 +285,7 @@ class ApiCalls(ScriptCalls):
 
     def _property(self, name: str, keywords: Keywords) -> Type:
         """The value of a property that bpy.props declares."""
-        for keyword in ("update", "items"):
-            if isinstance(kind := keywords.get(keyword), LocalFunction):
-                self.pass_to(kind.number, [UNKNOWN, Instance(f"{T}Context")], {})
+        self.given_to_property(keywords)
         if name in {"PointerProperty", "CollectionProperty"}:
             element = instance_of(keywords.get("type", UNKNOWN))
             if name == "PointerProperty" or element is UNKNOWN:

@@ -13,6 +13,7 @@ from kb_build.flow.calls.python_calls import PythonCalls
 from kb_build.flow.calls.read_calls import ReadCall
 from kb_build.flow.calls.script_calls import ScriptCalls
 from kb_build.flow.evaluation.expressions import CARRYING, constants
+from kb_build.flow.values.type_parts import entered
 from kb_build.flow.values.types import (
     NONE,
     UNKNOWN,
@@ -48,7 +49,7 @@ class Calls(ApiCalls, PythonCalls):
         keywords = {keyword.arg or "": self.evaluate(keyword.value) for keyword in node.keywords}
         call = ReadCall(node, arguments, keywords)
         if callee is UNKNOWN:
-            result = self._made_by_class_name(call)
+            result = self._of_unknown(call)
         elif isinstance(callee, Union):
             result = self._one_of_several(callee, call)
         else:
@@ -112,14 +113,18 @@ class Calls(ApiCalls, PythonCalls):
             self.here.resolutions[part] = replace(found[-1], symbols=symbols, missing=missing, sure=is_sure)
         return union(results)
 
-    def _made_by_class_name(self, call: ReadCall) -> Type:
-        """``tree.nodes.new("ShaderNodeMath")``: the text is the class, whatever the tree is."""
+    def _of_unknown(self, call: ReadCall) -> Type:
+        """What a method gives of a thing that is not known: ``tree.nodes.new("ShaderNodeMath")``, for the text is the
+        class whatever the tree is, and what an ExitStack enters.
+        """
         match call.node.func:
             case ast.Attribute(value=ast.Attribute(attr="nodes") | ast.Name(id="nodes"), attr="new"):
                 given = [*call.arguments, *call.keywords.values()]
                 text = literal_text(given[0]) if given else None
                 if text and self.api.descends(f"{T}{text}", NODE):
                     return Instance(f"{T}{text}")
+            case ast.Attribute(attr="enter_context") if len(call.arguments) == 1:
+                return entered(call.argument(0))  # of an ExitStack
             case _:
                 pass
         return UNKNOWN

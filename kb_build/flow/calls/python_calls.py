@@ -6,7 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.blender.facts import PYTHON_NAMES
-from kb_build.flow.calls.script_calls import ScriptCalls
+from kb_build.flow.calls.callbacks import Callbacks
 from kb_build.flow.state.core import ANY
 from kb_build.flow.syntax.trees import TAKING_OUT
 from kb_build.flow.values.texts import lessened
@@ -60,7 +60,7 @@ _STRING_RESULTS: dict[str, Type] = {
 }  # fmt: skip
 
 
-class PythonCalls(ScriptCalls):
+class PythonCalls(Callbacks):
     """Evaluates calls of what Python has."""
 
     def call_builtin(  # noqa: PLR0911, PLR0912 - one case a function
@@ -78,6 +78,8 @@ class PythonCalls(ScriptCalls):
         if name in PYTHON_NAMES:
             return self._of_library(name, call)
         if name in _ITERATORS:
+            if name == "sorted":
+                self._pass_to_key(call, UNKNOWN, self.iterated(first))
             return Sequence(
                 _ITERATORS[name], self.iterated(first) if arguments else UNKNOWN, is_empty=not call.node.args
             )
@@ -98,8 +100,7 @@ class PythonCalls(ScriptCalls):
                 return Sequence("iterator", self._applied(arguments[0], arguments[1], keep=False))
             case "min" | "max":
                 compared = self.iterated(first) if len(arguments) == 1 else union(arguments)
-                if isinstance(key := call.keywords.get("key"), LocalFunction):
-                    self.pass_to(key.number, [compared], {})
+                self._pass_to_key(call, UNKNOWN, compared)
                 return compared
             case "abs":
                 return Plain(first.kind) if isinstance(first, Plain) else UNKNOWN
@@ -157,8 +158,48 @@ class PythonCalls(ScriptCalls):
                 return Mapping(UNKNOWN, Sequence(kind, UNKNOWN, is_empty=True))
             case "copy":
                 return call.argument(0)
+            case "partial":
+                return self._partial(call)
+            case name:
+                return self._in_parts(name, call)
+
+    def _in_parts(self, name: str, call: ReadCall) -> Type:
+        """What a function of itertools makes of the elements that it goes through: some of them, pairs, groups."""
+        if name in {"dropwhile", "filterfalse", "takewhile"} and len(call.arguments) == 2:
+            return Sequence("iterator", self._applied(*call.arguments, keep=True))
+        element = self.iterated(call.argument(0))
+        match name:
+            case "batched":
+                return Sequence("iterator", Sequence("tuple", element))
+            case "groupby":
+                self._pass_to_key(call, call.argument(1), element)
+                return Sequence("iterator", Tuple((UNKNOWN, Sequence("iterator", element))))
+            case "pairwise":
+                return Sequence("iterator", Tuple((element, element)))
+            case "tee" if len(call.arguments) == 1:
+                again = Sequence("iterator", element)
+                return Tuple((again, again))
             case _:
                 return UNKNOWN
+
+    def _pass_to_key(self, call: ReadCall, key: Type, element: Type) -> None:
+        """The function that things are sorted or grouped by is given each of them."""
+        key = call.keywords.get("key", key)
+        if isinstance(key, LocalFunction):
+            self.pass_to(key.number, [element], {})
+
+    def _partial(self, call: ReadCall) -> Type:
+        """A class of the script that some names are given to already: what it makes has these, too."""
+        cls = call.argument(0)
+        if not isinstance(cls, LocalClass) or len(call.arguments) > 1 or "" in call.keywords:
+            return UNKNOWN
+        made = self.class_attribute(cls.number, "__init__")
+        if made and isinstance(made[0], LocalFunction):
+            self.pass_to(made[0].number, [], call.keywords)
+        for name in self.classes[cls.number].fields:
+            if name in call.keywords:
+                self.classes[cls.number].bind(name, call.keywords[name])
+        return cls
 
     def _dictionary(self, call: ReadCall) -> Type:
         """``dict(name=value)``, ``dict(pairs)``."""
@@ -290,6 +331,8 @@ class PythonCalls(ScriptCalls):
             case "index" | "count":
                 return INT
             case "append" | "add" | "insert" | "appendleft" if arguments:
+                if isinstance(call.node.func, ast.Attribute):
+                    self.given_to_handlers(call.node.func.value, arguments[-1])
                 self._grow(receiver, arguments[-1], call)
                 return NONE
             case "extend" | "update" if arguments:

@@ -50,6 +50,7 @@ from kb_build.flow.values.types import (
     Tuple,
     Type,
     Union,
+    is_empty,
     literal,
     literal_text,
     union,
@@ -511,7 +512,9 @@ class Members(Core):
         """What a loop over a value gives."""
         if isinstance(kind, Union):
             return union(
-                self.iterated(member) for member in kind.members if not isinstance(member, NoneValue)
+                self.iterated(member)
+                for member in kind.members
+                if not isinstance(member, NoneValue) and not is_empty(member)
             )
         if isinstance(kind, Collection):
             return kind.element

@@ -9,6 +9,7 @@ from kb_build.flow.evaluation.expressions import Expressions
 from kb_build.flow.state.core import ANY
 from kb_build.flow.state.definitions import ClassDefinition
 from kb_build.flow.state.scopes import Scope
+from kb_build.flow.syntax.decorators import hands_on, makes_one_that_hands_on
 from kb_build.flow.syntax.trees import children
 from kb_build.flow.values.types import (
     UNKNOWN,
@@ -22,7 +23,8 @@ from kb_build.flow.values.types import (
 )
 from kb_build.symbols.api_names import TYPES as T
 
-_KEEPING = frozenset({"persistent", "cache", "lru_cache"})  # decorators of functions that do the same
+# Decorators of functions that do the same, or that `with` takes what they yield from.
+_KEEPING = frozenset({"persistent", "cache", "lru_cache", "contextmanager", "asynccontextmanager"})
 _OBJECT = "object"
 _MOST_CLASSES = 1_000  # of one script; which ones later classes are mixed into is not asked
 
@@ -56,11 +58,21 @@ class Defining(Expressions):
                 case ast.Call(func=ast.Attribute(attr="lru_cache") | ast.Name(id="lru_cache")):
                     pass
                 case _:
-                    kind = UNKNOWN if cls is None else kind
+                    kind = UNKNOWN if cls is None and not self._hands_on(decorator) else kind
         self.read_defaults(node.args)
         self._read_type_parameters(node)
         self.bind(node.name, kind)
         return True
+
+    def _hands_on(self, decorator: ast.expr) -> bool:
+        """Whether a decorator of the script's leaves what it decorates as it is for those that call it."""
+        match decorator:
+            case ast.Call(func=made_by):
+                test = makes_one_that_hands_on
+            case made_by:
+                test = hands_on
+        kind = self.here.types.get(made_by, UNKNOWN)
+        return isinstance(kind, LocalFunction) and test(self.functions[kind.number].node)
 
     def read_class_definition(self, node: ast.ClassDef) -> bool:
         """Reads a class with its body, and binds its name."""

@@ -11,7 +11,8 @@ from kb_build.flow.state.core import EVERY_ERROR
 from kb_build.flow.state.doubts import EVERYTHING
 from kb_build.flow.state.scopes import joined
 from kb_build.flow.syntax.trees import run_with
-from kb_build.flow.values.types import UNKNOWN, Builtin, Sequence, Tuple, Type, catches, members, union
+from kb_build.flow.values.type_parts import entered
+from kb_build.flow.values.types import UNKNOWN, Builtin, Tuple, catches, members
 
 if TYPE_CHECKING:
     from collections.abc import Sequence as Rows
@@ -70,7 +71,7 @@ class Handlers(Guards, Ways):
         for item in node.items:
             kind = self.evaluate(item.context_expr)
             if item.optional_vars is not None:
-                self.bind_target(item.optional_vars, _entered(kind))
+                self.bind_target(item.optional_vars, entered(kind))
         suppressed = frozenset(name for item in node.items for name in self._suppressed(item.context_expr))
         with self.ready_for(suppressed):
             reached = self.read_body(node.body)
@@ -115,9 +116,3 @@ def _only_reads(statements: Rows[ast.stmt]) -> bool:
     parts = [*run_with(statements)]
     is_reading = any(isinstance(part, ast.Attribute) for part in parts)
     return is_reading and not any(isinstance(part, (ast.Call, ast.Subscript, ast.Raise)) for part in parts)
-
-
-def _entered(kind: Type) -> Type:
-    """What ``with`` gives: of a generator, which only a decorator makes a context manager, what it yields."""
-    yielded = [one.element for one in members(kind) if isinstance(one, Sequence) and one.kind == "iterator"]
-    return union(yielded) if yielded else kind

@@ -186,3 +186,9 @@ def telling(kind: Type, source: Telling | None, *, value: bool = False) -> Type:
     if isinstance(kind, Plain) and (kind.source is None or kind.source is PASSED):
         return Plain(kind.kind, kind.value if value else None, source)
     return kind
+
+
+def entered(kind: Type) -> Type:
+    """What ``with`` gives: of a generator, which only a decorator makes a context manager, what it yields."""
+    yielded = [one.element for one in members(kind) if isinstance(one, Sequence) and one.kind == "iterator"]
+    return union(yielded) if yielded else kind
