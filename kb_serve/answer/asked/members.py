@@ -109,7 +109,7 @@ class AskedMembers:
     def _classes_of(self, ids: Iterable[str]) -> dict[str, str]:
         """Id → the class that it is, or that it is a member of; empty for others."""
         read = self._reader
-        entries = {one: None if read.is_page(one) else read.entry(one) for one in ids}
+        entries = {one: None if read.manual.is_page(one) else read.entry(one) for one in ids}
         owners = {one: entry.owner if entry.kind in KINDS else one for one, entry in entries.items() if entry}
         read.entry.load(owners.values())
         found = {one: read.entry(owners.get(one, "")) for one in entries}
