@@ -33,8 +33,10 @@ def merge_versions(
             masks[path] |= 1 << number
     plain = dict(masks)
     stubs = sum(1 << number for number, version in enumerate(patches) if is_from_stubs(version))
-    _fill_unbuilt(plain, len(patches), stubs)
+    unbuilt = _fill_unbuilt(plain, len(patches), stubs)
     unknown = _unknown(plain, stubs)
+    for path, hidden in unbuilt.items():
+        unknown[path] |= hidden
     for path, hidden in _left_out(plain, stubs).items():
         unknown[path] |= hidden
     for path, hidden in _unlisted(plain).items():
@@ -47,8 +49,11 @@ def merge_versions(
     return ApiHistory(tuple(map(minor_of, patches)), patches, plain, shared, unknown)
 
 
-def _fill_unbuilt(masks: Masks, count: int, stubs: int) -> None:
-    """A whole module missing between two versions that have it was left out of that build, not of Blender."""
+def _fill_unbuilt(masks: Masks, count: int, stubs: int) -> Masks:
+    """A whole module missing between two versions that have it was left out of that build, not of Blender: it has what
+    the version before has. Returns path → the versions of which that is not known.
+    """
+    unknown: defaultdict[str, int] = defaultdict(int)
     for root in filter(is_module, masks):
         for number in range(1, count - 1):
             bit = 1 << number
@@ -57,8 +62,12 @@ def _fill_unbuilt(masks: Masks, count: int, stubs: int) -> None:
             before = masks[root] & bit - 1
             around = 1 << before.bit_length() - 1 if before else 0
             for path, mask in masks.items():
-                if (path == root or path.startswith(f"{root}.")) and mask & around and mask > bit:
-                    masks[path] = mask | bit
+                if path == root or path.startswith(f"{root}."):
+                    if mask & around and mask > bit:
+                        masks[path] = mask | bit
+                    else:
+                        unknown[path] |= bit & ~mask
+    return unknown
 
 
 def _left_out(masks: Masks, stubs: int) -> Masks:
