@@ -98,8 +98,8 @@ class AskedMembers:
     def _in_part(self, cls: str, choice: _Choice) -> list[CalledMember]:
         """The members of a class that a question calls by one of the words that are left, where hardly any have it."""
         found: list[CalledMember] = []
-        for word in choice.left.keys() - choice.subject - _COMMON - _words_in(cls):
-            having = self._called.having(cls, word)
+        for word in choice.left.keys() - choice.subject - _COMMON:
+            having = [] if _is_of_name(word, cls) else self._called.having(cls, word)
             if 0 < len(having) <= _FEW:
                 weights = self._reader.usage.weights(having)
                 best = max(having, key=lambda path: weights.get(path, 0.0))
@@ -138,7 +138,7 @@ class _Choice:
 
     def says_more(self, called: CalledMember, cls: str) -> bool:
         """Whether words say more than of which class, or about what, a member is."""
-        own = called.words - OF_SWITCHES - _words_in(cls)
+        own = {word for word in called.words - OF_SWITCHES if not _is_of_name(word, cls)}
         return bool(own) and (len(called.words) < _SEVERAL or not own <= self.subject)
 
     def add(self, cls: str, found: Iterable[CalledMember]) -> int:
@@ -196,6 +196,11 @@ class _Choice:
     def _says(self, cls: str, other: str, of_member: frozenset[str] = frozenset()) -> bool:
         """Whether a question has a word of a class's name that the name of another has not, nor a member."""
         return not (_words_in(cls) - _words_in(other) - of_member).isdisjoint(self.asked.places)
+
+
+def _is_of_name(word: str, cls: str) -> bool:
+    """Whether a word (a stem) is one of a class's name, or begins one: "line art" of a LineartModifier."""
+    return any(part.startswith(word) for part in _words_in(cls))
 
 
 def _words_in(cls: str) -> frozenset[str]:

@@ -124,7 +124,6 @@ def test_sockets_are_asked_for_by_type_and_side(kb: KnowledgeBase) -> None:
     [
         ("driver on a constraint influence", '.constraints[0].driver_add("influence")`'),
         ("keyframe the strength of a displace modifier", '.keyframe_insert("strength", frame=1)`'),
-        ("shape key driver from script", '.active_shape_key.driver_add("value")`'),
     ],
 )
 def test_it_is_told_how_what_is_asked_for_is_animated(question: str, line: str, kb: KnowledgeBase) -> None:

@@ -131,7 +131,9 @@ def test_names_stand_beside_the_term_that_they_are_of(line: str, expected: str) 
 def test_beside_degrees_stands_that_scripts_set_radians(base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with KnowledgeBase(base) as kb:
         for text, is_told in (("From 1.0° to 180.0°.", True), ("A wide beam.", False)):
-            monkeypatch.setattr(kb.reader, "passage_text", lambda _, text=text: ("lights", "Spot", text))
+            monkeypatch.setattr(
+                kb.reader.manual, "passage_text", lambda _, text=text: ("lights", "Spot", text)
+            )
             for unit in ("ROTATION", "LENGTH"):
                 (block,) = pages.passage_block("bpy.types.SpotLight.spot_size", kb.reader, unit)
                 assert ("a script sets radians" in block.text) == (is_told and unit == "ROTATION")

@@ -472,7 +472,7 @@ def test_a_member_of_a_node_that_no_tree_takes_says_so(kb: KnowledgeBase) -> Non
         ("Brush.size", "`brushes` is empty in the start-up file"),
         (
             "BrushGpencilSettings.angle",
-            "`brushes` is empty in the start-up file; `gpencil_settings` is `None` on some kinds of a new Brush",
+            "`brushes` is empty in the start-up file; `gpencil_settings` is `None` on a new Brush (but ",
         ),
         ("BoidRule.name", "`boids` is `None` on a new ParticleSettings; made by"),
         ("BoidState.volume", "`boids` is `None` on a new ParticleSettings; made by"),

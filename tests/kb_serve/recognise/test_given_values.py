@@ -112,7 +112,7 @@ def test_the_likeliest_argument_says_most_of_the_same() -> None:
 
 
 def test_only_what_a_call_takes_is_named_in_place_of_a_wrong_value(kb: KnowledgeBase) -> None:
-    notes = kb.query("mesh.attributes.new('a', type='FLOAT', domain='VERTEX')").notes
+    notes = kb.query("mesh.attributes.new('a', type='FLOAT', domain='WHOLE')").notes
     assert any("It takes `'POINT'`, `'EDGE'`, `'FACE'`, `'CORNER'`." in note for note in notes)
     notes = kb.query("bpy.ops.object.parent_set(type='ARMATURE_AUTOMATIC')").notes
     assert any(note.endswith("Closest: `'ARMATURE_AUTO'`.") for note in notes)
