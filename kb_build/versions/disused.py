@@ -67,13 +67,15 @@ def with_later_ways(symbols: Iterable[Symbol], table: Iterable[Succession], vers
     known = {symbol.path for symbol in symbols}
     modules = {symbol.owner for symbol in symbols if STUB in symbol.flags}
     later = {row.old: row for row in table if version_key(row.version or version) > version_key(version)}
-    told: list[Symbol] = []
-    for symbol in symbols:
+
+    def told(symbol: Symbol) -> Symbol:
         module = next((one for one in (symbol.path, symbol.owner) if one in modules), "")
         row = (later.get(symbol.path) or later.get(module)) if module else None
-        going = Deprecation(_instead(row, known), removal=row.version) if row else symbol.deprecation
-        told.append(replace(symbol, deprecation=going))
-    return told
+        if row is None:
+            return symbol
+        return replace(symbol, deprecation=Deprecation(_instead(row, known), removal=row.version))
+
+    return [told(symbol) for symbol in symbols]
 
 
 def _instead(row: Succession, known: set[str], *before: str) -> str:

@@ -173,12 +173,16 @@ class ApiHistory:
             return
         yield from (path for path, mask, _ in self.symbols() if mask >> number & 1)
 
+    def doubted(self, version: str) -> Iterator[str]:
+        """Everything of which it is not known whether a version has it, the items of shared enumerations included."""
+        number = self._number(version)
+        if number is None:
+            return
+        yield from (path for path, _, unknown in self.symbols() if unknown >> number & 1)
+
     def modules(self, version: str) -> tuple[str, ...]:
         """The modules that a version has, and those of which that is not known: a build may be made without some."""
-        return tuple(path for path in self.masks if is_module(path) and self._may_have(path, version))
-
-    def _may_have(self, path: str, version: str) -> bool:
-        return self._number(version) is not None and self.exists(path, version) is not False
+        return tuple(filter(is_module, (*self.paths(version), *self.doubted(version))))
 
     def removed_from(self, version: str) -> Iterator[RemovedSpan]:
         """What other versions have and this one lacks: gone, or not there yet."""

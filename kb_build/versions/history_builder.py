@@ -191,12 +191,7 @@ def _doubted(old: ApiHistory, paths: Mapping[str, set[str]], kept: Sequence[str]
     """
     asked = [patch for patch in paths if patch not in kept and minor_of(patch) in old.versions]
     now = set[str]().union(*(paths[patch] - set(old.paths(patch)) for patch in asked))
-    return {
-        patch: (now | {path for path, _, _ in old.symbols() if old.exists(path, patch) is None})
-        - paths[patch]
-        for patch in kept
-        if not is_from_stubs(patch)
-    }
+    return {patch: (now | {*old.doubted(patch)}) - paths[patch] for patch in kept if not is_from_stubs(patch)}
 
 
 def _refuse_poorer(old: ApiHistory, extracted: Mapping[str, set[str]], output: Path) -> None:

@@ -35,12 +35,9 @@ def merge_versions(
     stubs = sum(1 << number for number, version in enumerate(patches) if is_from_stubs(version))
     unbuilt = _fill_unbuilt(plain, len(patches), stubs)
     unknown = _unknown(plain, stubs)
-    for path, hidden in unbuilt.items():
-        unknown[path] |= hidden
-    for path, hidden in _left_out(plain, stubs).items():
-        unknown[path] |= hidden
-    for path, hidden in _unlisted(plain).items():
-        unknown[path] |= hidden
+    for more in (unbuilt, _left_out(plain, stubs), _unlisted(plain)):
+        for path, hidden in more.items():
+            unknown[path] |= hidden
     for version, doubtful in (doubted or {}).items():
         for path in plain.keys() & doubtful:
             unknown[path] |= 1 << patches.index(version) & ~plain[path]
@@ -84,13 +81,8 @@ def _left_out(masks: Masks, stubs: int) -> Masks:
 
 def _unlisted(masks: Masks) -> Masks:
     """Path of an item → the versions that list a placeholder alone in its enumeration."""
-    of_enum: defaultdict[str, Masks] = defaultdict(dict)
-    for path, mask in masks.items():
-        above, mark, name = split_path(path)
-        if mark == ":":
-            of_enum[above][name] = mask
     found: Masks = {}
-    for above, own in of_enum.items():
+    for above, own in _items(masks).items():
         placeholders = listed = 0
         for name, mask in own.items():
             if name in _PLACEHOLDERS:
@@ -141,11 +133,7 @@ def _share(masks: Masks, unknown: Masks, stubs: int) -> dict[str, str]:
     Returns the property or parameter → its enumeration. Stubs do not name these enumerations: what they list where a
     Blender says which one it is, tells its items.
     """
-    items: defaultdict[str, Masks] = defaultdict(dict)
-    for path, mask in masks.items():
-        above, mark, name = split_path(path)
-        if mark == ":":
-            items[above][name] = mask
+    items = _items(masks)
     places = _places(items, masks, stubs)
     shared: dict[str, str] = {}
     for enumeration, users in places.items():
@@ -160,6 +148,16 @@ def _share(masks: Masks, unknown: Masks, stubs: int) -> dict[str, str]:
                 for item in items[path]:
                     del masks[f"{path}:{item}"]
     return shared
+
+
+def _items(masks: Masks) -> defaultdict[str, Masks]:
+    """Enumeration → its items."""
+    items: defaultdict[str, Masks] = defaultdict(dict)
+    for path, mask in masks.items():
+        above, mark, name = split_path(path)
+        if mark == ":":
+            items[above][name] = mask
+    return items
 
 
 def _places(items: Mapping[str, Masks], masks: Masks, stubs: int) -> dict[str, list[str]]:

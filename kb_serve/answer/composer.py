@@ -11,7 +11,7 @@ from kb_build.index.analysis import stems_of
 from kb_build.symbols.api_names import TYPES
 from kb_serve.answer.asked.animated import animated
 from kb_serve.answer.asked.members import AskedMembers
-from kb_serve.answer.asked.sides import are_told, meant_by, sides_of
+from kb_serve.answer.asked.sides import CODE, are_told, meant_by, sides_of
 from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.changes import changes_of, version_asked_about
 from kb_serve.answer.drafts import Draft, draft_of, paged, with_notes
@@ -48,7 +48,6 @@ _NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
 _SETTINGS = 2  # of a topic that are hits before its classes
 _LESS = 0.02  # score from one id to the next, where nothing was ranked
 _LONGEST_WORD = 100  # no name of Blender's has as many letters
-_CODE = frozenset("()[]{}=\"'")
 _OPERATOR = re.compile(r"bpy\.ops\.\w+\.\w+")
 _COMMENT = re.compile(r"(?:^|(?<=\s))#\s[^\n]*\n", re.MULTILINE)  # of code, of which lines are joined
 _DOCSTRING = re.compile(r"(:\s*\n\s*)(?:\"{3}.*?\"{3}|'{3}.*?'{3})", re.DOTALL)
@@ -143,7 +142,7 @@ class AnswerComposer:
         """Paths of the members that a question asks for beside the first of ``rows``. Code says itself whose they are:
         there they are those that were ``found`` of the class that is the first row.
         """
-        if _CODE.isdisjoint(text) and not is_message(text):
+        if CODE.isdisjoint(text) and not is_message(text):
             return self._members.of(text, asked, [row.id for row in rows])
         own = f"{rows[0].id}."
         return [
@@ -181,11 +180,9 @@ class AnswerComposer:
         yield from self._renderer.sockets(hits[0].id, text)
         whole = self._blocks.whole(hits[0], rows[0], asked_of((), arguments if given else ()))
         yield from islice(whole, 1)
-        first = members if hits[0].is_page else ()
         yield from self._animated(asked_words(text), hits, members)
-        yield from self._lines.asked_members(hits[0], () if first else members)
-        others = [*self._lines.further(*_but(members, hits, rows), first=first)]
-        yield from _names_before_long(whole, others)
+        yield from self._lines.asked_members(hits[0], members)
+        yield from _names_before_long(whole, [*self._others(hits, rows, members)])
 
     def _found(
         self,
@@ -205,11 +202,10 @@ class AnswerComposer:
         excerpt = self._blocks.excerpt(
             hits[0], rows[0]._replace(members=near), asked_of(found, names if told else ())
         )
-        first = members if hits[0].is_page else ()
-        others = [*self._lines.further(*_but(members, hits, rows), asked, first=first)]
+        others = [*self._others(hits, rows, members, asked)]
         yield next(excerpt)
         yield from self._animated(asked, hits, members)
-        yield from self._lines.asked_members(hits[0], () if first else members)
+        yield from self._lines.asked_members(hits[0], members)
         yield from told
         yield from self._made(hits[0], asked_of(found))
         if hits[0].is_page:
@@ -217,6 +213,23 @@ class AnswerComposer:
             others = [block for block in others if block.name != NAMES]
         yield from excerpt
         yield from others
+
+    def _others(
+        self,
+        hits: Sequence[Hit],
+        rows: Sequence[RankedId],
+        members: Sequence[str],
+        asked: Sequence[str] = (),
+        told: int = 1,
+    ) -> Iterator[AnswerBlock]:
+        """A line for each hit behind the first ones that are ``told``. The ``members`` that are asked for are not among
+        them; behind a page they are their first.
+        """
+        left = [place for place in range(told, len(hits)) if hits[place].id not in members]
+        first = members if hits[0].is_page else ()
+        return self._lines.further(
+            [hits[place] for place in left], [rows[place] for place in left], asked, first=first
+        )
 
     def _animated(
         self, asked: Sequence[str], hits: Sequence[Hit], members: Sequence[str]
@@ -257,11 +270,8 @@ class AnswerComposer:
             blocks.append(head)
             more += [AnswerBlock(f"### `{hit.id}`", hit.id), *rest] if rest else ()
         blocks += self._lines.asked_members(hits[0], [path for path in members if path not in told])
-        others = [place for place in range(len(meant), len(hits)) if hits[place].id not in members]
         blocks += more
-        blocks += self._lines.further(
-            [hits[place] for place in others], [rows[place] for place in others], asked
-        )
+        blocks += self._others(hits, rows, members, asked, told=len(meant))
         return draft_of("candidates", hits, notes, blocks)
 
     def _answer_each(self, parts: Sequence[QuestionPart], ranking: Ranking, limit: int) -> Draft:
@@ -329,14 +339,6 @@ class AnswerComposer:
 def _in_given_order(ids: Iterable[str], why: Literal["part", "topic"]) -> list[RankedId]:
     """Ids that no search has ranked, with scores that fall from one to the next."""
     return [RankedId(identifier, 1.0 - _LESS * place, why) for place, identifier in enumerate(ids)]
-
-
-def _but(
-    paths: Collection[str], hits: Sequence[Hit], rows: Sequence[RankedId]
-) -> tuple[list[Hit], list[RankedId]]:
-    """The hits behind the first that are none of some symbols, and their rows."""
-    left = [place for place, hit in enumerate(hits) if place and hit.id not in paths]
-    return [hits[place] for place in left], [rows[place] for place in left]
 
 
 def _in_one_line(query: str) -> str:

@@ -56,7 +56,11 @@ class HitLines:
                 yield AnswerBlock(f"**{title}**\n" + "\n".join(lines), name)
 
     def asked_members(self, hit: Hit, paths: Sequence[str]) -> Iterator[AnswerBlock]:
-        """A line for each member that is asked for beside the best hit; of a class without its name."""
+        """A line for each member that is asked for beside the best hit; of a class without its name. Behind a page they
+        are the first of the further names.
+        """
+        if hit.is_page:
+            return
         own = f"{hit.id}."
         lines = [*self.members(hit.id, [path.removeprefix(own) for path in paths if path.startswith(own)])]
         lines += self.by_path([path for path in paths if not path.startswith(own)])

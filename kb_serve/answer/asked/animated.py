@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import terms
+from kb_build.symbols.api_names import STRUCT
 from kb_build.symbols.lines import written
 from kb_build.symbols.paths import last_name
 from kb_build.symbols.records import ANIMATABLE
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
 # What a question says → the function that does it, and what it takes besides.
 _FUNCTIONS = {"keyfram": ("keyframe_insert", ", frame=1"), "driver": ("driver_add", "")}
-_FUNCTIONS_HEAD = "bpy.types.bpy_struct."
+_FUNCTIONS_HEAD = f"{STRUCT}."
 _LEAST = 1.0  # weight of a property that somebody animates
 
 
@@ -52,9 +53,7 @@ def _held(
             return None
         own = [one for one in reader.members(path).values() if one.kind == "property"]
         heaviest = reader.usage.heaviest(own, _LEAST)
-        return next(
-            filter(None, (_held(one.path, asked, reader, is_class=True) for one in heaviest[:1])), None
-        )
+        return _held(heaviest[0].path, asked, reader, is_class=True) if heaviest else None
     symbol = reader.symbol(path) if entry.kind in {"property", "socket"} else None
     owner = reader.symbol(symbol.owner) if symbol else None
     if symbol is None or owner is None or not owner.reached:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _BETWEEN = re.compile(r",?\s+(?:vs\.?|versus|compared (?:to|with)|as opposed to)\s+", re.I)
 _DIFFERENCE = re.compile(r"(?:.*\s)?differences? between (.+?) and (.+)", re.I)
-_CODE = frozenset("()[]{}=\"'")
+CODE = frozenset("()[]{}=\"'")
 _MOST_SIDES = 3
 _LONGEST = 5  # words of a side
 # What things are, which the last of them says for all.
@@ -38,7 +38,7 @@ class Side(NamedTuple):
 
 def sides_of(question: str) -> list[Side]:
     """What a question compares, in its order; none where it compares nothing."""
-    if not _CODE.isdisjoint(question):
+    if not CODE.isdisjoint(question):
         return []
     text = question.strip(" .?!")
     found = _DIFFERENCE.fullmatch(text)

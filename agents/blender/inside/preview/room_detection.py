@@ -99,20 +99,20 @@ class _Rays:
     def is_inside(self, place, *, fronts_only=False):
         """Whether large objects are nearly all around; under a roof, smaller ones count as well."""
 
-        def meets(direction, size):
-            hits = self._hits(place, direction)
-            if (
-                fronts_only and hits and not hits[0][2]
-            ):  # it looks out of a solid, beside which others may stand
+        around = [self._hits(place, direction) for direction in _AROUND]
+
+        def meets(hits, size):
+            # It looks out of a solid, beside which others may stand.
+            if fronts_only and hits and not hits[0][2]:
                 return False
             return any(self._sizes[name] >= size and (front or not fronts_only) for name, _, front in hits)
 
         # Rays that leave a solid may go on to another one beside it.
-        if fronts_only and sum(_leaves_solid(self._hits(place, way)) for way in _AROUND) > _OPEN:
+        if fronts_only and sum(map(_leaves_solid, around)) > _OPEN:
             return False
         if self._is_roofed(place):
-            return sum(meets(direction, _PART) for direction in _AROUND) >= len(_AROUND) - _OPEN_BELOW_ROOF
-        return sum(meets(direction, _WALL) for direction in _AROUND) >= len(_AROUND) - _OPEN
+            return sum(meets(hits, _PART) for hits in around) >= len(_AROUND) - _OPEN_BELOW_ROOF
+        return sum(meets(hits, _WALL) for hits in around) >= len(_AROUND) - _OPEN
 
     def is_low(self, place):
         """Whether something is right above."""
