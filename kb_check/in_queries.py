@@ -18,12 +18,12 @@ from kb_check.summary import mended
 from kb_check.text.source import split_lines
 from kb_check.whole_fixes import with_whole_fixes
 from kb_serve.lookups.base_file import UNLIMITED
+from kb_serve.recognise.chains.chains import MOST_CODE, find_chains
+from kb_serve.recognise.chains.variables import is_guess, usual_classes
 from kb_serve.recognise.code.wrong_values import NO_VALUE
+from kb_serve.recognise.likely.corrections import is_misspelling
 from kb_serve.recognise.message_patterns import members_named
-from kb_serve.recognise.names.likely.corrections import is_misspelling
 from kb_serve.recognise.removed.lost_names import is_telling
-from kb_serve.recognise.resolving.chains import MOST_CODE, find_chains
-from kb_serve.recognise.resolving.variables import is_guess, usual_classes
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence

@@ -78,7 +78,11 @@ ORDERS = {
         *("records", "kept_rows", "base_file", "symbols"),
         *("names", "history", "makers", "manual", "usage", "settings"),
     ),
-    "kb_serve.recognise.names": ("likely", "named", "elsewhere", "by_words"),
+    "kb_serve.recognise": (
+        *("message_patterns", "several", "unwanted", "changed_by"),
+        *("chains", "elsewhere", "resolver", "likely", "removed", "recognition", "by_words", "named"),
+        *("notes", "code", "messages", "missing_names", "recogniser"),
+    ),
     "kb_serve.answer": (
         *("budget", "pages", "facts", "ways", "render", "steps", "topic", "asked"),
         *(

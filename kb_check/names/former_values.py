@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.paths import argument_of, plain_path
 from kb_check.syntax.literals import written
-from kb_serve.recognise.names.likely.likely_values import value_there
+from kb_serve.recognise.likely.likely_values import value_there
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -11,14 +11,14 @@ from kb_build.symbols.api_names import CONTEXT, OPERATORS, SIDES, STRUCT, TYPES
 from kb_build.symbols.paths import is_socket, last_name, plain_path
 from kb_check.names.likely import by_label
 from kb_serve.rank.meant_members import meant_members
-from kb_serve.recognise.names.by_words.operator_words import OperatorWords, same_operator_words
-from kb_serve.recognise.names.by_words.set_elsewhere import set_elsewhere
-from kb_serve.recognise.names.elsewhere.layers import former_layer
-from kb_serve.recognise.names.likely.corrections import by_first_word, is_misspelling, nearest, shortened
-from kb_serve.recognise.names.likely.likely_keywords import likely_parameters
-from kb_serve.recognise.names.likely.node_names import is_like_a_node, nodes_meant
-from kb_serve.recognise.names.named.enum_values import EnumValues
-from kb_serve.recognise.names.named.names_of_new import NamesOfNew
+from kb_serve.recognise.by_words.operator_words import OperatorWords, same_operator_words
+from kb_serve.recognise.by_words.set_elsewhere import set_elsewhere
+from kb_serve.recognise.elsewhere.layers import former_layer
+from kb_serve.recognise.likely.corrections import by_first_word, is_misspelling, nearest, shortened
+from kb_serve.recognise.likely.likely_keywords import likely_parameters
+from kb_serve.recognise.named.enum_values import EnumValues
+from kb_serve.recognise.named.names_of_new import NamesOfNew
+from kb_serve.recognise.named.node_names import is_like_a_node, nodes_meant
 from kb_serve.recognise.notes import Notes
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup, for_reading

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import stem, words
-from kb_serve.recognise.names.likely.likely_keywords import EMPTY_WORDS
+from kb_serve.recognise.likely.likely_keywords import EMPTY_WORDS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

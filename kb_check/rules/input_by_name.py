@@ -19,7 +19,7 @@ from kb_build.flow.values.types import Instance, literal_text
 from kb_check.findings import Finding
 from kb_check.nodes.group_inputs import named_inputs
 from kb_check.rule import Rule
-from kb_serve.recognise.resolving.subscripts import NODES_MODIFIER, CustomProperties
+from kb_serve.recognise.chains.subscripts import NODES_MODIFIER, CustomProperties
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

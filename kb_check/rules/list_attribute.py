@@ -31,7 +31,7 @@ from kb_check.syntax.bindings import once_bound
 from kb_check.syntax.words import words_in_texts
 from kb_check.values.custom_values import is_number_array
 from kb_check.values.misfits import describe
-from kb_serve.recognise.names.elsewhere.elements import elsewhere
+from kb_serve.recognise.elsewhere.elements import elsewhere
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

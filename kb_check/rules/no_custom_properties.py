@@ -35,7 +35,7 @@ from kb_check.nodes.group_inputs import input_now
 from kb_check.registered.classes import own_classes
 from kb_check.rule import Rule
 from kb_check.running.tried import is_tried
-from kb_serve.recognise.resolving.subscripts import (
+from kb_serve.recognise.chains.subscripts import (
     INPUT_KEY,
     NODES_MODIFIER,
     OF_NODES_MODIFIER,

@@ -39,8 +39,8 @@ from kb_check.running.tried import is_tried
 from kb_check.script import once_per_script
 from kb_check.syntax.literals import number, written
 from kb_check.values.data_paths import follow, item, size
+from kb_serve.recognise.chains.subscripts import INPUT_KEY, NODES_MODIFIER, CustomProperties
 from kb_serve.recognise.changed_by import ANIMATED_BY
-from kb_serve.recognise.resolving.subscripts import INPUT_KEY, NODES_MODIFIER, CustomProperties
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

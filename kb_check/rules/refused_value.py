@@ -53,7 +53,7 @@ from kb_check.script import once_per_script
 from kb_check.syntax.bindings import alias, bindings
 from kb_check.syntax.named_before import is_named_only_behind
 from kb_check.syntax.words import named_words
-from kb_serve.recognise.names.likely.likely_values import same_elsewhere
+from kb_serve.recognise.likely.likely_values import same_elsewhere
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator

@@ -29,7 +29,7 @@ from kb_check.script import once_per_script
 from kb_check.syntax.definitions import FUNCTIONS
 from kb_check.syntax.literals import times_bound
 from kb_check.syntax.words import attributes
-from kb_serve.recognise.names.likely.corrections import is_misspelling, nearest
+from kb_serve.recognise.likely.corrections import is_misspelling, nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

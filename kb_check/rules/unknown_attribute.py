@@ -44,10 +44,10 @@ from kb_check.running.tried import is_tried
 from kb_check.syntax.annotated import ONE_IS_WRONG, annotated
 from kb_check.syntax.bindings import bindings
 from kb_check.syntax.words import words_in_texts
-from kb_serve.recognise.names.elsewhere.elements import Elsewhere, elsewhere
-from kb_serve.recognise.names.elsewhere.holders import by_what_holds_it, of_collection
-from kb_serve.recognise.names.elsewhere.meant_elsewhere import meant_elsewhere
-from kb_serve.recognise.names.elsewhere.members_within import members_within
+from kb_serve.recognise.elsewhere.elements import Elsewhere, elsewhere
+from kb_serve.recognise.elsewhere.holders import by_what_holds_it, of_collection
+from kb_serve.recognise.elsewhere.meant_elsewhere import meant_elsewhere
+from kb_serve.recognise.elsewhere.members_within import members_within
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

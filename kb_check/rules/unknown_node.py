@@ -39,7 +39,7 @@ from kb_check.nodes.trees import tree_added_to
 from kb_check.rule import Rule
 from kb_check.running.raised import refusing_class
 from kb_check.script import once_for_each, once_per_script
-from kb_serve.recognise.names.likely.node_names import same_in_tree, tree_of_family
+from kb_serve.recognise.named.node_names import same_in_tree, tree_of_family
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

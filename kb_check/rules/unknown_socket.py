@@ -44,7 +44,7 @@ from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.running.asked_for_none import is_ready_for_none
 from kb_check.running.raised import LACKS_KEY
-from kb_serve.recognise.resolving.subscripts import NODES_MODIFIER
+from kb_serve.recognise.chains.subscripts import NODES_MODIFIER
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -70,7 +70,7 @@ from kb_check.values.given import assigned, class_values, given_values
 from kb_check.values.mathutils_sizes import MATRIX
 from kb_check.values.misfits import describe
 from kb_check.values.python_paths import is_path
-from kb_serve.recognise.names.likely.likely_values import item_called
+from kb_serve.recognise.likely.likely_values import item_called
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

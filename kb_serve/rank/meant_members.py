@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.index.analysis import stem, stems_of, words
 from kb_build.symbols.api_names import ID, STRUCT
 from kb_build.symbols.paths import last_name, split_path
-from kb_serve.recognise.names.likely.corrections import are_opposite, is_misspelling
-from kb_serve.recognise.names.likely.likely_keywords import EMPTY_WORDS
+from kb_serve.recognise.likely.corrections import are_opposite, is_misspelling
+from kb_serve.recognise.likely.likely_keywords import EMPTY_WORDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Set

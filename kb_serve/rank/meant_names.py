@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import stems_of
 from kb_build.symbols.paths import last_name
 from kb_serve.rank.meant_members import MeantMembers, meant_members
-from kb_serve.recognise.names.elsewhere.data_of_others import data_of_others
-from kb_serve.recognise.names.elsewhere.members_within import OF_ELEMENTS
-from kb_serve.recognise.names.likely.corrections import is_misspelling
-from kb_serve.recognise.names.named.registered_names import add_registering, is_own_name
-from kb_serve.recognise.notes import SIMILAR
+from kb_serve.recognise.elsewhere.members_within import OF_ELEMENTS
+from kb_serve.recognise.likely.corrections import is_misspelling
+from kb_serve.recognise.named.data_of_others import data_of_others
+from kb_serve.recognise.named.registered_names import add_registering, is_own_name
+from kb_serve.recognise.recognition import SIMILAR
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from kb_serve.rank.search import Searcher
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.names.elsewhere.data_of_others import DataOfOthers
+    from kb_serve.recognise.named.data_of_others import DataOfOthers
     from kb_serve.recognise.recognition import MissingName, Recognition
 
 _MEANT = 0.89  # how sure what the search finds of a class is meant by a name that it lacks

@@ -17,10 +17,10 @@ from kb_serve.rank.nodes.named_nodes import named_nodes
 from kb_serve.rank.opposites import opposites_last
 from kb_serve.rank.ranked_id import RankedId
 from kb_serve.rank.sections import asked_section
+from kb_serve.recognise.chains.variables import is_short_form
 from kb_serve.recognise.message_patterns import is_message, prose_of
 from kb_serve.recognise.notes import Notes
 from kb_serve.recognise.recogniser import Recogniser
-from kb_serve.recognise.resolving.variables import is_short_form
 from kb_serve.recognise.unwanted import without_unwanted
 
 if TYPE_CHECKING:

@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key, terms
 from kb_build.symbols.api_names import ID, TYPES
 from kb_build.symbols.paths import last_name
-from kb_serve.recognise.names.by_words.said_otherwise import said_otherwise
-from kb_serve.recognise.names.elsewhere.holders import by_what_holds_it
-from kb_serve.recognise.names.elsewhere.inputs_meant import input_meant
-from kb_serve.recognise.names.elsewhere.meant_elsewhere import meant_elsewhere
-from kb_serve.recognise.names.elsewhere.members_within import members_within
-from kb_serve.recognise.names.elsewhere.other_kinds import of_another_kind
-from kb_serve.recognise.names.likely.corrections import by_first_word, names_meant, nearest, shortened
-from kb_serve.recognise.notes import SIMILAR
+from kb_serve.recognise.by_words.said_otherwise import said_otherwise
+from kb_serve.recognise.elsewhere.holders import by_what_holds_it
+from kb_serve.recognise.elsewhere.inputs_meant import input_meant
+from kb_serve.recognise.elsewhere.meant_elsewhere import meant_elsewhere
+from kb_serve.recognise.elsewhere.members_within import members_within
+from kb_serve.recognise.elsewhere.other_kinds import of_another_kind
+from kb_serve.recognise.likely.corrections import by_first_word, names_meant, nearest, shortened
+from kb_serve.recognise.recognition import SIMILAR
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.names.by_words.operator_words import OperatorWords
+    from kb_serve.recognise.by_words.operator_words import OperatorWords
     from kb_serve.recognise.recognition import MissingName, Recognition
 
 _FEW_OWN = 2  # properties of a class that is asked for one which it lacks

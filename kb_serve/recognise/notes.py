@@ -3,26 +3,26 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import OPERATORS, STRUCT, TYPES, interface_part
 from kb_build.symbols.lines import written
 from kb_build.symbols.paths import as_code, is_socket, last_name, split_path
 from kb_build.symbols.unlisted import OPTIONS, option_of
-from kb_serve.recognise.names.elsewhere.meant_elsewhere import meant_elsewhere
-from kb_serve.recognise.names.likely.corrections import names_meant, nearest
-from kb_serve.recognise.names.named.enum_values import EnumValues
-from kb_serve.recognise.resolving.subscripts import MODIFIER_PROPERTIES, CustomProperties
+from kb_serve.recognise.chains.subscripts import MODIFIER_PROPERTIES, CustomProperties
+from kb_serve.recognise.elsewhere.meant_elsewhere import meant_elsewhere
+from kb_serve.recognise.likely.corrections import names_meant, nearest
+from kb_serve.recognise.named.enum_values import EnumValues
+from kb_serve.recognise.recognition import SIMILAR
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.names.elsewhere.meant_elsewhere import MeantElsewhere
+    from kb_serve.recognise.elsewhere.meant_elsewhere import MeantElsewhere
     from kb_serve.recognise.recognition import MissingName, Recognition
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol
 
-SIMILAR: Final = "similar name"  # one of the names closest to a missing one
 _CLOSE = 0.6  # similar names with at least this share of the best one's score are named
 _MOST_NAMED = 3
 _MOST_ALIKE = 4

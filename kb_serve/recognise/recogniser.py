@@ -11,10 +11,16 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key, tokens
 from kb_build.symbols.api_names import COLLECTION, TYPES
 from kb_build.symbols.paths import last_name, plain_path, socket_node
+from kb_serve.recognise.by_words.menus_by_words import menu_extended
+from kb_serve.recognise.by_words.operator_words import OperatorWords
+from kb_serve.recognise.chains.bindings import with_bindings
+from kb_serve.recognise.chains.chains import Chain, find_chains
+from kb_serve.recognise.chains.subscripts import asked_of_inputs
 from kb_serve.recognise.code.expressions import Expressions
 from kb_serve.recognise.code.operator_properties import explain_properties
 from kb_serve.recognise.code.own_names import own_names
 from kb_serve.recognise.code.uses import Uses, is_other_enum
+from kb_serve.recognise.likely.corrections import Corrector
 from kb_serve.recognise.message_patterns import (
     BAD_ENUM,
     classes_of_things,
@@ -28,24 +34,18 @@ from kb_serve.recognise.message_patterns import (
 )
 from kb_serve.recognise.messages.messages import Messages
 from kb_serve.recognise.missing_names import MissingNames
-from kb_serve.recognise.names.by_words.menus_by_words import menu_extended
-from kb_serve.recognise.names.by_words.operator_words import OperatorWords
-from kb_serve.recognise.names.likely.corrections import Corrector
-from kb_serve.recognise.names.named.addresses import ids_in_urls
-from kb_serve.recognise.names.named.enum_values import EnumValues
-from kb_serve.recognise.names.named.spellings import Spellings
-from kb_serve.recognise.recognition import Recognition
-from kb_serve.recognise.removed.newer_nodes import (
+from kb_serve.recognise.named.addresses import ids_in_urls
+from kb_serve.recognise.named.enum_values import EnumValues
+from kb_serve.recognise.named.newer_nodes import (
     name_on_an_old_node,
     tell_of_the_newer_mix,
     tell_of_the_newer_node,
 )
+from kb_serve.recognise.named.spellings import Spellings
+from kb_serve.recognise.recognition import Recognition
 from kb_serve.recognise.removed.old_code import OldCode
 from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
-from kb_serve.recognise.resolving.bindings import with_bindings
-from kb_serve.recognise.resolving.chains import Chain, find_chains
-from kb_serve.recognise.resolving.resolver import Resolver
-from kb_serve.recognise.resolving.subscripts import asked_of_inputs
+from kb_serve.recognise.resolver import Resolver
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
-from kb_serve.recognise.resolving.chains import ChainKey
+from kb_serve.recognise.chains.chains import ChainKey
 from simworlds.schemas.value_class import value_class
 
 if TYPE_CHECKING:
-    from kb_serve.recognise.names.likely.corrections import Correction
+    from kb_serve.recognise.likely.corrections import Correction
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol
 
 # What makes a match of something.
@@ -45,6 +45,7 @@ Why = Literal[
     "within",
     "wrong operator",
 ]
+SIMILAR: Final = "similar name"  # why: one of the names closest to a missing one
 WHOLE_LABEL = 0.82  # how sure something is that is called as the whole query
 
 

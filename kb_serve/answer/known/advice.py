@@ -6,12 +6,12 @@ from kb_build.symbols.api_names import HANDLERS, TYPES
 from kb_build.symbols.lines import GET_EVALUATED
 from kb_serve.answer.known.told_of import Advice, of, stems
 from kb_serve.recognise.code.products import CLASSES, WITH_AT
+from kb_serve.recognise.elsewhere.elements import ADDS_BOID_RULE
 from kb_serve.recognise.messages.keys import KEY_OF_SLOTS, SLOTTED
 from kb_serve.recognise.messages.nameless.python import PLAIN_FUNCTION
 from kb_serve.recognise.messages.nameless.rendering import OF_32_BITS
 from kb_serve.recognise.messages.none_before import TAKES_NO_MODIFIER
 from kb_serve.recognise.messages.ways_to_run import NO_FLUIDS
-from kb_serve.recognise.names.elsewhere.elements import ADDS_BOID_RULE
 
 _STROKE = "_bpy_internal.grease_pencil.stroke.GreasePencilStroke"
 _STYLE = f"{TYPES}MaterialGPencilStyle"

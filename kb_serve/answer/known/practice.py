@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import stems_of
 from kb_serve.answer.known.advice import ADVICE
 from kb_serve.answer.known.recipes import RECIPES
-from kb_serve.recognise.resolving.subscripts import NODES_MODIFIER, CustomProperties
+from kb_serve.recognise.chains.subscripts import NODES_MODIFIER, CustomProperties
 from simworlds.releases import version_key
 
 if TYPE_CHECKING:

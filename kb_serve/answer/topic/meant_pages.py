@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key, terms, topic_key
 from kb_build.index.everyday_table import first_term
 from kb_serve.answer.topic.titles import KINDS, OF_CODE, OF_OBJECTS, TopicTitles, is_chapter_of, keys_of
-from kb_serve.recognise.names.named.enum_values import is_quoted_value
+from kb_serve.recognise.named.enum_values import is_quoted_value
 
 if TYPE_CHECKING:
     from kb_serve.answer.topic.page_settings import TopicSettings

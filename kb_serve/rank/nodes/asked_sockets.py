@@ -9,7 +9,7 @@ from kb_build.index.analysis import STOP_WORDS, key
 from kb_build.symbols.api_names import SIDES
 from kb_build.symbols.paths import plain_path
 from kb_serve.rank.nodes.named_nodes import nodes_by_label, words_said
-from kb_serve.recognise.names.by_words.members_by_words import SIDE_WORDS, sockets_by_words
+from kb_serve.recognise.by_words.members_by_words import SIDE_WORDS, sockets_by_words
 from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 
 if TYPE_CHECKING:

@@ -7,24 +7,24 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import OPERATORS, TYPES
 from kb_build.symbols.unlisted import SOMETIMES
-from kb_serve.recognise.names.elsewhere.elements import ADDING, elsewhere, meant_by_key
-from kb_serve.recognise.names.elsewhere.holders import of_collection
-from kb_serve.recognise.names.elsewhere.members_within import of_elements
+from kb_serve.recognise.chains.chain_starts import ROOTS
+from kb_serve.recognise.chains.chains import ChainStep
+from kb_serve.recognise.chains.subscripts import MODIFIER_PROPERTIES, PROPERTIES_OF_MODIFIER
+from kb_serve.recognise.chains.variables import OTHERWISE, USUAL, is_guess, usual_classes
+from kb_serve.recognise.elsewhere.elements import ADDING, elsewhere, meant_by_key
+from kb_serve.recognise.elsewhere.holders import of_collection
+from kb_serve.recognise.elsewhere.members_within import of_elements
 from kb_serve.recognise.recognition import MissingName
-from kb_serve.recognise.resolving.chain_starts import ROOTS
-from kb_serve.recognise.resolving.chains import ChainStep
-from kb_serve.recognise.resolving.subscripts import MODIFIER_PROPERTIES, PROPERTIES_OF_MODIFIER
-from kb_serve.recognise.resolving.variables import OTHERWISE, USUAL, is_guess, usual_classes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from kb_serve.lookups.records import SymbolEntry
     from kb_serve.reader import BaseReader
+    from kb_serve.recognise.chains.chains import Chain
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed.old_code import OldCode
-    from kb_serve.recognise.resolving.chains import Chain
-    from kb_serve.recognise.resolving.resolver import ResolvedChain, Resolver
+    from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
 CLEAR = 0.85  # fit of a variable's name that hardly means another class
 LEAST = 0.1  # fit below which neither the variable's name nor its member tells the class

@@ -10,16 +10,16 @@ from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.flags import operator_also, operator_areas, operator_given, refused_nothing
 from kb_build.symbols.lines import TRIED, operator_needs
 from kb_build.symbols.records import REFUSED_ALL
-from kb_serve.recognise.resolving.call_texts import arguments
-from kb_serve.recognise.resolving.chains import find_chains
-from kb_serve.recognise.resolving.variables import usual_classes
+from kb_serve.recognise.chains.call_texts import arguments
+from kb_serve.recognise.chains.chains import find_chains
+from kb_serve.recognise.chains.variables import usual_classes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kb_build.symbols.needs import OperatorNeeds
     from kb_build.symbols.records import Symbol
-    from kb_serve.recognise.resolving.chains import Chain
+    from kb_serve.recognise.chains.chains import Chain
 
 OVERRIDE = "bpy.types.Context.temp_override"
 NO_OVERRIDE = (

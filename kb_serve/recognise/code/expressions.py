@@ -19,6 +19,12 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.paths import as_code, is_socket, plain_path
+from kb_serve.recognise.by_words.said_otherwise import said_otherwise
+from kb_serve.recognise.chains.animated_paths import path_given
+from kb_serve.recognise.chains.chain_starts import LEAST_OF_COLLECTION
+from kb_serve.recognise.chains.owners import TOLD_BY_MEMBER
+from kb_serve.recognise.chains.subscripts import CustomProperties
+from kb_serve.recognise.chains.variables import USUAL, usual_classes
 from kb_serve.recognise.code.broken_expressions import (
     CLEAR,
     LEAST,
@@ -30,16 +36,10 @@ from kb_serve.recognise.code.broken_expressions import (
 from kb_serve.recognise.code.loose_names import LooseNames
 from kb_serve.recognise.code.names_beside import NamesBeside, said_in_words
 from kb_serve.recognise.code.python_methods import note_on_method
-from kb_serve.recognise.names.by_words.said_otherwise import said_otherwise
-from kb_serve.recognise.names.elsewhere.holders import by_what_holds_it
-from kb_serve.recognise.names.likely.likely_values import value_there
+from kb_serve.recognise.elsewhere.holders import by_what_holds_it
+from kb_serve.recognise.likely.likely_values import value_there
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed.removed_symbols import for_reading
-from kb_serve.recognise.resolving.animated_paths import path_given
-from kb_serve.recognise.resolving.chain_starts import LEAST_OF_COLLECTION
-from kb_serve.recognise.resolving.owners import TOLD_BY_MEMBER
-from kb_serve.recognise.resolving.subscripts import CustomProperties
-from kb_serve.recognise.resolving.variables import USUAL, usual_classes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -47,12 +47,12 @@ if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol
     from kb_serve.lookups.records import SymbolEntry
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.names.by_words.operator_words import OperatorWords
-    from kb_serve.recognise.names.likely.corrections import Corrector
+    from kb_serve.recognise.by_words.operator_words import OperatorWords
+    from kb_serve.recognise.chains.chains import Chain
+    from kb_serve.recognise.likely.corrections import Corrector
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed.old_code import OldCode, OldName
-    from kb_serve.recognise.resolving.chains import Chain
-    from kb_serve.recognise.resolving.resolver import ResolvedChain, Resolver
+    from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
 _FEW = 3
 _DEPRECATED = "Deprecated"  # in the description of what is on its way out, not of what it leads to

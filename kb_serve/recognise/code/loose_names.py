@@ -7,17 +7,16 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key, terms
 from kb_build.schema import FORM_NAME, FORM_SHORT
 from kb_build.symbols.api_names import TYPES
-from kb_serve.recognise.names.likely.node_names import add_nodes_meant, is_like_a_node
-from kb_serve.recognise.names.named.enum_values import is_value
-from kb_serve.recognise.notes import SIMILAR
-from kb_serve.recognise.recognition import MissingName
+from kb_serve.recognise.named.enum_values import is_value
+from kb_serve.recognise.named.node_names import add_nodes_meant, is_like_a_node
+from kb_serve.recognise.recognition import SIMILAR, MissingName
 
 if TYPE_CHECKING:
     from kb_serve.lookups.records import SymbolEntry
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.names.likely.corrections import Corrector
+    from kb_serve.recognise.chains.chains import Chain
+    from kb_serve.recognise.likely.corrections import Corrector
     from kb_serve.recognise.recognition import Recognition
-    from kb_serve.recognise.resolving.chains import Chain
 
 _FEW = 3
 _LONG = 12  # letters from which on a name is corrected without knowing what it belongs to

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from kb_build.symbols.taken import Setting, Taken
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.resolving.chains import Chain
+    from kb_serve.recognise.chains.chains import Chain
 
 _WORD = re.compile(r"\w+")
 

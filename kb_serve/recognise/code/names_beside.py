@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import STOP_WORDS, stem, words
 from kb_build.symbols.api_names import STRUCT, TYPES
-from kb_serve.recognise.names.by_words.members_by_words import members_by_words
+from kb_serve.recognise.by_words.members_by_words import members_by_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from kb_serve.reader import BaseReader
+    from kb_serve.recognise.chains.chains import Chain
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed.old_code import OldCode
-    from kb_serve.recognise.resolving.chains import Chain
 
 _OF = frozenset({"a", "an", "from", "in", "of", "on", "the", "to"})
 

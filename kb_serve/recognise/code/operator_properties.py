@@ -13,9 +13,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from kb_serve.reader import BaseReader
+    from kb_serve.recognise.chains.chains import Chain
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
-    from kb_serve.recognise.resolving.chains import Chain
 
 _NAMED = 0.98  # how sure an operator is whose properties are asked for
 

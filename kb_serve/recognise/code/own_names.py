@@ -11,13 +11,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import OPERATORS
-from kb_serve.recognise.resolving.variables import usual_classes
+from kb_serve.recognise.chains.variables import usual_classes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence, Set
 
+    from kb_serve.recognise.chains.chains import Chain
     from kb_serve.recognise.recognition import MissingName
-    from kb_serve.recognise.resolving.chains import Chain
 
 _ASSIGNED = re.compile(r"(?<![\w.])(?P<name>[^\W\d]\w*)\s*=(?!=)\s*(?P<value>\S{0,60})")
 # What begins a value of Python's own; a number or None is often replaced by something of Blender's.

@@ -9,8 +9,8 @@ from kb_build.index.analysis import words
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kb_serve.recognise.resolving.chains import Chain
-    from kb_serve.recognise.resolving.resolver import Resolver
+    from kb_serve.recognise.chains.chains import Chain
+    from kb_serve.recognise.resolver import Resolver
 
 CLASSES = ("mathutils.Matrix", "mathutils.Vector", "mathutils.Quaternion")
 WITH_AT = (

@@ -7,24 +7,24 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.paths import plain_path
+from kb_serve.recognise.chains.refusals import keywords
+from kb_serve.recognise.chains.variables import is_guess, usual_classes
 from kb_serve.recognise.code.contexts import NO_OVERRIDE, OVERRIDE
 from kb_serve.recognise.code.met_conditions import is_met
 from kb_serve.recognise.code.products import WITH_AT, Products
 from kb_serve.recognise.code.python_methods import is_method_of_python
-from kb_serve.recognise.code.refusals import keywords
 from kb_serve.recognise.code.wrong_arguments import wrong_arguments
 from kb_serve.recognise.code.wrong_values import wrong_values
 from kb_serve.recognise.message_patterns import items_listed
-from kb_serve.recognise.resolving.variables import is_guess, usual_classes
 
 if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.names.named.enum_values import EnumValues
+    from kb_serve.recognise.chains.chains import Chain
+    from kb_serve.recognise.named.enum_values import EnumValues
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed.old_code import OldCode
-    from kb_serve.recognise.resolving.chains import Chain
-    from kb_serve.recognise.resolving.resolver import Resolver
+    from kb_serve.recognise.resolver import Resolver
 
 _FEW = 3
 _SURE = 0.9

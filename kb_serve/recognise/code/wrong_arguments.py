@@ -6,10 +6,10 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.paths import split_path
+from kb_serve.recognise.by_words.set_elsewhere import set_elsewhere
+from kb_serve.recognise.chains.call_texts import arguments
 from kb_serve.recognise.code.contexts import NO_OVERRIDE, with_context
-from kb_serve.recognise.names.by_words.set_elsewhere import set_elsewhere
-from kb_serve.recognise.names.likely.likely_keywords import likely_parameters
-from kb_serve.recognise.resolving.call_texts import arguments
+from kb_serve.recognise.likely.likely_keywords import likely_parameters
 from kb_serve.signatures import places_of
 from simworlds.counting import counted
 from simworlds.releases import version_key
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.resolving.chains import Chain
+    from kb_serve.recognise.chains.chains import Chain
 
 _FEW = 4  # arguments that are all named
 _WITHOUT_CONTEXTS = (4, 0)  # the version since which operators take no dictionary

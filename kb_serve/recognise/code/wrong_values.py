@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.flags import never_taken
 from kb_build.symbols.unlisted import FEWEST_VALUES, MORE_VALUES
-from kb_serve.recognise.code.refusals import given_texts
-from kb_serve.recognise.names.likely.likely_keywords import likely_parameters
-from kb_serve.recognise.names.likely.likely_values import likely_items
-from kb_serve.recognise.resolving.call_texts import arguments, texts_in
+from kb_serve.recognise.chains.call_texts import arguments, texts_in
+from kb_serve.recognise.chains.refusals import given_texts
+from kb_serve.recognise.likely.likely_keywords import likely_parameters
+from kb_serve.recognise.likely.likely_values import likely_items
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from kb_build.symbols.records import EnumItem, Parameter, Symbol
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.resolving.chains import Chain
+    from kb_serve.recognise.chains.chains import Chain
 
 NO_VALUE = r" is no(?:t a)? value of "  # how notes say that something is none, as a pattern
 NONE_RENAMED: Mapping[str, str] = MappingProxyType({})

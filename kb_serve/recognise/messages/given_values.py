@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
 from kb_serve.recognise import message_patterns as forms
+from kb_serve.recognise.likely.likely_values import item_called
 from kb_serve.recognise.messages.absent import ANY, as_written
-from kb_serve.recognise.names.likely.likely_values import item_called
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -7,10 +7,10 @@ import sys
 from typing import TYPE_CHECKING
 
 from kb_serve.recognise import message_patterns as forms
+from kb_serve.recognise.chains.chain_starts import ROOTS
 from kb_serve.recognise.messages.guides import EXTENSIONS, ON_WHEELS, add_guide
 from kb_serve.recognise.messages.nameless.files import NO_SUCH_ADDON
 from kb_serve.recognise.messages.of_older import of_older
-from kb_serve.recognise.resolving.chain_starts import ROOTS
 
 if TYPE_CHECKING:
     from kb_serve.lookups.records import SymbolEntry

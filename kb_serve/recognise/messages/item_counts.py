@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
-from kb_serve.recognise.resolving.chains import find_chains
+from kb_serve.recognise.chains.chains import find_chains
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

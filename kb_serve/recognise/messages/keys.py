@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import COLLECTION, STRUCT, TYPES
 from kb_serve.recognise import message_patterns as forms
+from kb_serve.recognise.chains.subscripts import CustomProperties
 from kb_serve.recognise.messages.guides import EXTENSIONS
 from kb_serve.recognise.messages.labelled_nodes import sockets_of_labelled_nodes
 from kb_serve.recognise.messages.of_older import of_older
@@ -17,9 +18,8 @@ from kb_serve.recognise.messages.parts_of_nodes import (
     on_setting,
     sockets_by_setting,
 )
-from kb_serve.recognise.names.named.names_of_new import NamesOfNew
-from kb_serve.recognise.removed.newer_nodes import tell_of_the_newer_node
-from kb_serve.recognise.resolving.subscripts import CustomProperties
+from kb_serve.recognise.named.names_of_new import NamesOfNew
+from kb_serve.recognise.named.newer_nodes import tell_of_the_newer_node
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -9,8 +9,8 @@ from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.paths import argument_of, plain_path
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.code.wrong_arguments import unknown_keywords
-from kb_serve.recognise.names.likely.corrections import nearest
-from kb_serve.recognise.names.likely.likely_keywords import EMPTY_WORDS, likely_parameters
+from kb_serve.recognise.likely.corrections import nearest
+from kb_serve.recognise.likely.likely_keywords import EMPTY_WORDS, likely_parameters
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

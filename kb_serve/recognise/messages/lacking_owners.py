@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import words
 from kb_build.symbols.api_names import ID, TYPES
+from kb_serve.recognise.chains.operator_classes import known_operator_of_class
+from kb_serve.recognise.elsewhere.elements import elsewhere
+from kb_serve.recognise.elsewhere.layers import former_layer
+from kb_serve.recognise.elsewhere.members_within import members_within
+from kb_serve.recognise.likely.corrections import is_misspelling, nearest
 from kb_serve.recognise.messages.context_members import note_on_absent
 from kb_serve.recognise.messages.of_older import of_older
-from kb_serve.recognise.names.by_words.operator_words import known_operator_of_class
-from kb_serve.recognise.names.elsewhere.elements import elsewhere
-from kb_serve.recognise.names.elsewhere.layers import former_layer
-from kb_serve.recognise.names.elsewhere.members_within import members_within
-from kb_serve.recognise.names.likely.corrections import is_misspelling, nearest
-from kb_serve.recognise.notes import SIMILAR
-from kb_serve.recognise.recognition import MissingName
+from kb_serve.recognise.recognition import SIMILAR, MissingName
 
 if TYPE_CHECKING:
     from kb_serve.lookups.records import SymbolEntry

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.names.named.enum_values import EnumValues
+    from kb_serve.recognise.named.enum_values import EnumValues
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.messages.of_older import of_older
-from kb_serve.recognise.names.likely.node_names import add_nodes_meant, same_in_tree, tree_of_family
+from kb_serve.recognise.named.node_names import add_nodes_meant, same_in_tree, tree_of_family
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

@@ -12,21 +12,21 @@ from kb_build.index.analysis import terms
 from kb_build.symbols.api_names import OPERATORS, TYPES
 from kb_build.symbols.flags import empty_when_new, fillers
 from kb_build.symbols.records import FILLED_BY, NEVER_NONE, READ_ONLY, RETURNS_NONE
+from kb_serve.recognise.chains.bindings import with_bindings
+from kb_serve.recognise.chains.chains import find_chains
+from kb_serve.recognise.chains.variables import usual_classes
 from kb_serve.recognise.messages.absent import ANY, WEIGHTY, is_empty_when_new
 from kb_serve.recognise.messages.outside_areas import OF_AN_AREA, OUTSIDE, SPACE
-from kb_serve.recognise.resolving.bindings import with_bindings
-from kb_serve.recognise.resolving.chains import find_chains
-from kb_serve.recognise.resolving.variables import usual_classes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kb_serve.lookups.records import SymbolEntry
     from kb_serve.reader import BaseReader
+    from kb_serve.recognise.chains.chains import Chain
     from kb_serve.recognise.messages.absent import Absent
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
-    from kb_serve.recognise.resolving.chains import Chain
 
 _FEW = 3
 _IS_READ = 0.98  # how sure what may be None is that the code reads the name of: before what it then lacks

@@ -10,10 +10,10 @@ from kb_build.symbols.flags import operator_given, refused_nothing
 from kb_build.symbols.lines import operator_needs
 from kb_build.symbols.records import REFUSED_ALL
 from kb_serve.recognise import message_patterns as forms
+from kb_serve.recognise.chains.operator_classes import known_operator_of_class
 from kb_serve.recognise.code.contexts import NO_OVERRIDE, OVERRIDE, context_for, keywords_given
+from kb_serve.recognise.likely.corrections import nearest
 from kb_serve.recognise.messages.guides import ON_OPERATORS, add_guide
-from kb_serve.recognise.names.by_words.operator_words import known_operator_of_class
-from kb_serve.recognise.names.likely.corrections import nearest
 
 if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol

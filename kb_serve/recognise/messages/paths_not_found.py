@@ -8,7 +8,7 @@ from kb_build.symbols.api_names import ID
 from kb_build.symbols.records import ANIMATABLE
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.changed_by import ANIMATED_BY
-from kb_serve.recognise.names.likely.corrections import nearest
+from kb_serve.recognise.likely.corrections import nearest
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

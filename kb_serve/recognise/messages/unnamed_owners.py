@@ -7,11 +7,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import COLLECTION, TYPES
-from kb_serve.recognise.names.elsewhere.elements import elsewhere
+from kb_serve.recognise.elsewhere.elements import elsewhere
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.names.elsewhere.elements import Elsewhere
+    from kb_serve.recognise.elsewhere.elements import Elsewhere
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import OPERATORS, TYPES
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.names.likely.corrections import is_misspelling
+from kb_serve.recognise.likely.corrections import is_misspelling
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

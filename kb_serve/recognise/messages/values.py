@@ -10,14 +10,14 @@ from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.paths import last_name, plain_path
 from kb_build.symbols.records import READ_ONLY
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.names.likely.likely_values import likely_values
+from kb_serve.recognise.likely.likely_values import likely_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.messages.named_symbols import NamedSymbols
-    from kb_serve.recognise.names.named.enum_values import EnumValues
+    from kb_serve.recognise.named.enum_values import EnumValues
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 

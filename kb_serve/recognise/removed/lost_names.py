@@ -10,20 +10,20 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.index.analysis import words
 from kb_build.symbols.api_names import OBJECT, SIDES, TYPES
 from kb_build.symbols.paths import socket_node
-from kb_serve.recognise.code.refusals import is_listed, refuses
-from kb_serve.recognise.names.elsewhere.members_within import members_within
-from kb_serve.recognise.resolving.call_texts import texts_given
-from kb_serve.recognise.resolving.chain_starts import ROOTS
-from kb_serve.recognise.resolving.chains import ChainStep
-from kb_serve.recognise.resolving.variables import classes_of_parts, usual_classes
+from kb_serve.recognise.chains.call_texts import texts_given
+from kb_serve.recognise.chains.chain_starts import ROOTS
+from kb_serve.recognise.chains.chains import ChainStep
+from kb_serve.recognise.chains.refusals import is_listed, refuses
+from kb_serve.recognise.chains.variables import classes_of_parts, usual_classes
+from kb_serve.recognise.elsewhere.members_within import members_within
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from kb_serve.reader import BaseReader
+    from kb_serve.recognise.chains.chains import Chain
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
-    from kb_serve.recognise.resolving.chains import Chain
-    from kb_serve.recognise.resolving.resolver import ResolvedChain
+    from kb_serve.recognise.resolver import ResolvedChain
 
 _NAMED = 0.5  # fit of a class that a variable's name tells
 _FAR_LIKELIER = 1.3  # so much more than what has a name today must count what had it

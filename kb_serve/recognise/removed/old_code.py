@@ -11,11 +11,11 @@ from kb_build.index.analysis import key, words
 from kb_build.symbols.api_names import OPERATORS, SIDES, TYPES, interface_part
 from kb_build.symbols.flags import NODE_FAMILIES
 from kb_build.symbols.paths import is_socket, last_name, socket_node, split_path
+from kb_serve.recognise.chains.call_texts import arguments, texts_given, texts_in
+from kb_serve.recognise.chains.chain_starts import ROOTS
+from kb_serve.recognise.chains.chains import find_chains
+from kb_serve.recognise.chains.variables import USUAL, usual_classes, variable_fit
 from kb_serve.recognise.removed.lost_names import LostName, LostNames, is_telling
-from kb_serve.recognise.resolving.call_texts import arguments, texts_given, texts_in
-from kb_serve.recognise.resolving.chain_starts import ROOTS
-from kb_serve.recognise.resolving.chains import find_chains
-from kb_serve.recognise.resolving.variables import USUAL, usual_classes, variable_fit
 from simworlds.releases import version_key
 
 if TYPE_CHECKING:
@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
     from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
+    from kb_serve.recognise.chains.chains import Chain, ChainStep
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
-    from kb_serve.recognise.resolving.chains import Chain, ChainStep
-    from kb_serve.recognise.resolving.resolver import ResolvedChain, Resolver
+    from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
 _LIKELY_FIT = 0.6  # from this fit of a variable's name on, its class is believed if it had the name once
 _BETTER = 0.05  # by this a removed class must fit a name more than one of today

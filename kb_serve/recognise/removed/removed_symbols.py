@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key, words
 from kb_build.symbols.api_names import CONTEXT, ID, TYPES
 from kb_build.symbols.paths import argument_of, item_of, plain_path, socket_node, split_path
-from kb_serve.recognise.names.likely.likely_keywords import likely_keywords
-from kb_serve.recognise.resolving.variables import usual_classes
+from kb_serve.recognise.chains.variables import usual_classes
+from kb_serve.recognise.likely.likely_keywords import likely_keywords
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

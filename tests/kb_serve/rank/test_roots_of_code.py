@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.recognise.resolving.variables import is_short_form
+from kb_serve.recognise.chains.variables import is_short_form
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.recognise.resolving.bindings import with_bindings
-from kb_serve.recognise.resolving.chains import find_chains
+from kb_serve.recognise.chains.bindings import with_bindings
+from kb_serve.recognise.chains.chains import find_chains
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

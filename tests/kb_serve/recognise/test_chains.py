@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from kb_serve.recognise.resolving.chains import MAX_QUERY, ChainStep, find_chains
+from kb_serve.recognise.chains.chains import MAX_QUERY, ChainStep, find_chains
 
 
 def steps(text: str) -> list[tuple[str, str]]:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 from told_by_blender import told_by_blender
 
+from kb_serve.recognise.chains.chains import find_chains
 from kb_serve.recognise.code.contexts import with_context
-from kb_serve.recognise.resolving.chains import find_chains
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import SEED, classes, misspelt, of_data, owner_and_name
 
-from kb_serve.recognise.names.likely.corrections import LIKELY, Corrector, is_misspelling, nearest, similarity
-from kb_serve.recognise.resolving.chains import find_chains
-from kb_serve.recognise.resolving.resolver import Resolver
+from kb_serve.recognise.chains.chains import find_chains
+from kb_serve.recognise.likely.corrections import LIKELY, Corrector, is_misspelling, nearest, similarity
+from kb_serve.recognise.resolver import Resolver
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.names.likely.corrections import Correction
-    from kb_serve.recognise.resolving.resolver import ResolvedChain
+    from kb_serve.recognise.likely.corrections import Correction
+    from kb_serve.recognise.resolver import ResolvedChain
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 from told_by_blender import told_by_blender
 
-from kb_serve.recognise.names.elsewhere.elements import ADDED_BY, REMOVED_BY
+from kb_serve.recognise.elsewhere.elements import ADDED_BY, REMOVED_BY
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.recognise.names.likely.likely_keywords import likely_keywords
-from kb_serve.recognise.names.likely.likely_values import likely_values
+from kb_serve.recognise.likely.likely_keywords import likely_keywords
+from kb_serve.recognise.likely.likely_values import likely_values
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

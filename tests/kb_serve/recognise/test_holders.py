@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from told_by_blender import told_by_blender
 
-from kb_serve.recognise.names.elsewhere.holders import by_what_holds_it
+from kb_serve.recognise.elsewhere.holders import by_what_holds_it
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from kb_serve.recognise.names.elsewhere.inputs_meant import input_meant
+from kb_serve.recognise.elsewhere.inputs_meant import input_meant
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import bpy
 import pytest
 
-from kb_serve.recognise.names.elsewhere.meant_elsewhere import MEANT_ELSEWHERE
+from kb_serve.recognise.elsewhere.meant_elsewhere import MEANT_ELSEWHERE
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.recognise.names.by_words import members_by_words
+from kb_serve.recognise.by_words import members_by_words
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

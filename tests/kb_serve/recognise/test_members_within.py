@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.recognise.names.elsewhere.members_within import members_within
+from kb_serve.recognise.elsewhere.members_within import members_within
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

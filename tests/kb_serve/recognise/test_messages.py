@@ -12,9 +12,9 @@ import pytest
 from told_by_blender import told_by_blender
 
 from kb_serve.recognise import message_patterns
+from kb_serve.recognise.elsewhere.layers import in_layers
 from kb_serve.recognise.message_patterns import may_be_message, prose_of
 from kb_serve.recognise.messages.outside_areas import OUTSIDE
-from kb_serve.recognise.names.elsewhere.layers import in_layers
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.recognise.names.likely.node_names import is_like_a_node, nodes_meant
+from kb_serve.recognise.named.node_names import is_like_a_node, nodes_meant
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

@@ -10,7 +10,7 @@ import pytest
 
 from kb_build.symbols.paths import as_code
 from kb_build.versions.successors import load_successors
-from kb_serve.recognise.removed.newer_nodes import INSTEAD
+from kb_serve.recognise.named.newer_nodes import INSTEAD
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.recognise.names.by_words.operator_words import OperatorWords
+from kb_serve.recognise.by_words.operator_words import OperatorWords
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

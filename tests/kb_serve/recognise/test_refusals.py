@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import bpy
 import pytest
 
-from kb_serve.recognise.code.refusals import keywords, refuses, refuses_call
-from kb_serve.recognise.resolving.chains import find_chains
+from kb_serve.recognise.chains.chains import find_chains
+from kb_serve.recognise.chains.refusals import keywords, refuses, refuses_call
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

@@ -14,8 +14,8 @@ import pytest
 from asking import SEED, TYPES, classes, first_id, wrong
 from whole import IS_WHOLE, examples
 
-from kb_serve.recognise.resolving.chains import find_chains
-from kb_serve.recognise.resolving.resolver import Resolver
+from kb_serve.recognise.chains.chains import find_chains
+from kb_serve.recognise.resolver import Resolver
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.recognise.names.by_words.operator_words import OperatorWords
-from kb_serve.recognise.names.by_words.said_otherwise import labelled, operators_on
+from kb_serve.recognise.by_words.operator_words import OperatorWords
+from kb_serve.recognise.by_words.said_otherwise import labelled, operators_on
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from told_by_blender import told_by_blender
 
-from kb_serve.recognise.names.by_words.set_elsewhere import set_elsewhere
+from kb_serve.recognise.by_words.set_elsewhere import set_elsewhere
 
 if TYPE_CHECKING:
     from pathlib import Path

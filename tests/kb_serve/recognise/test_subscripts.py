@@ -11,7 +11,7 @@ from told_by_blender import told_by_blender
 from kb_build.symbols.api_names import TYPES
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.reader import BaseReader
-from kb_serve.recognise.resolving.subscripts import CustomProperties
+from kb_serve.recognise.chains.subscripts import CustomProperties
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

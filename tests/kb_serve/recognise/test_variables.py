@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.recognise.resolving.variables import Variables, usual_classes, variable_fit
+from kb_serve.recognise.chains.variables import Variables, usual_classes, variable_fit
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
@@ -44,7 +44,7 @@ def test_the_names_that_scripts_use_are_known(variable: str, classes: list[str])
 
 def test_every_usual_class_exists_here(reader: BaseReader) -> None:
     """A misspelt class in the table would be ignored without a word."""
-    from kb_serve.recognise.resolving import variables
+    from kb_serve.recognise.chains import variables
 
     paths = {path for paths in variables._BY_NAME.values() for path in paths}
     assert [path for path in sorted(paths) if reader.entry(path) is None] == []

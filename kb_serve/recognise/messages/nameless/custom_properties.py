@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from kb_build.symbols.api_names import STRUCT
 from kb_build.symbols.api_names import TYPES as T
+from kb_serve.recognise.chains.subscripts import PROPERTIES_OF_MODIFIER
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
-from kb_serve.recognise.resolving.subscripts import PROPERTIES_OF_MODIFIER
 
 _TAKING = (
     "Only data-blocks (objects, scenes, materials …), bones and their collections, nodes, strips, view layers, "

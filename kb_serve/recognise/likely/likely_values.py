@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, words
-from kb_serve.recognise.names.likely.corrections import nearest
+from kb_serve.recognise.likely.corrections import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import ID, OPERATORS, TYPES
-from kb_serve.recognise.names.by_words.operator_words import operator_of_class
-from kb_serve.recognise.names.by_words.said_otherwise import labelled
+from kb_serve.recognise.by_words.said_otherwise import labelled
+from kb_serve.recognise.chains.operator_classes import operator_of_class
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from kb_build.symbols.api_names import BLEND_DATA, COLLECTION, CONTEXT, TYPES
 from kb_build.symbols.math_classes import math_class
 from kb_build.symbols.python_values import is_new_list
-from kb_serve.recognise.resolving.untyped_properties import SEQUENCES, VALUES
+from kb_serve.recognise.chains.untyped_properties import SEQUENCES, VALUES
 from simworlds.schemas.value_class import value_class
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import words
 from kb_build.symbols.api_names import TYPES
-from kb_serve.recognise.resolving.subscripts import CustomProperties
+from kb_serve.recognise.chains.subscripts import CustomProperties
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import words
 from kb_build.symbols.api_names import ID, TYPES
 from kb_build.symbols.python_values import is_new_list
-from kb_serve.recognise.resolving.chain_values import ChainValue
-from kb_serve.recognise.resolving.subscripts import INPUT_KEY, NODES_MODIFIER, PROPERTIES_OF_MODIFIER
-from kb_serve.recognise.resolving.variables import USUAL, Variables
+from kb_serve.recognise.chains.chain_values import ChainValue
+from kb_serve.recognise.chains.subscripts import INPUT_KEY, NODES_MODIFIER, PROPERTIES_OF_MODIFIER
+from kb_serve.recognise.chains.variables import USUAL, Variables
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.resolving.chain_values import ChainValues
-    from kb_serve.recognise.resolving.chains import Chain
-    from kb_serve.recognise.resolving.owners import Owners
+    from kb_serve.recognise.chains.chain_values import ChainValues
+    from kb_serve.recognise.chains.chains import Chain
+    from kb_serve.recognise.chains.owners import Owners
 
 ROOTS = {
     "C": "bpy.context",

@@ -9,7 +9,7 @@ import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.symbols.flags import NODE_FAMILIES
-from kb_serve.recognise.resolving.chains import MAX_STEPS, Chain, ChainStep, sockets_in
+from kb_serve.recognise.chains.chains import MAX_STEPS, Chain, ChainStep, sockets_in
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

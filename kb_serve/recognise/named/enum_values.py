@@ -13,7 +13,7 @@ from kb_build.symbols.flags import operator_areas
 from kb_build.symbols.lines import taken_text
 from kb_build.symbols.paths import argument_of, plain_path
 from kb_build.symbols.records import EnumItem
-from kb_serve.recognise.names.likely.likely_values import (
+from kb_serve.recognise.likely.likely_values import (
     explaining,
     labelled_items,
     likely_items,

@@ -5,15 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
-from kb_serve.recognise.resolving.chains import ChainStep
-from kb_serve.recognise.resolving.variables import classes_of_parts, usual_classes, variable_fit
+from kb_serve.recognise.chains.chains import ChainStep
+from kb_serve.recognise.chains.variables import classes_of_parts, usual_classes, variable_fit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from kb_serve.lookups.records import SymbolEntry
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.resolving.chains import Chain
+    from kb_serve.recognise.chains.chains import Chain
 
 # Fit of the class that is likeliest meant by a member, for a variable whose name tells nothing; and of one that a part
 # of the name, or what the member is set to, tells.

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.index.analysis import distinct_words, key, words
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.paths import socket_name
-from kb_serve.recognise.resolving.chains import Chain, ChainStep
-from kb_serve.recognise.resolving.variables import USUAL
+from kb_serve.recognise.chains.chains import Chain, ChainStep
+from kb_serve.recognise.chains.variables import USUAL
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Mapping, Sequence
 
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.resolving.resolver import ResolvedChain, Resolver
+    from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
 LIKELY = 0.72  # similarity from which on a name is offered as a correction
 _CONTAINED = 0.8  # for a name whose words are all in the other one: ``select`` and ``select_set``

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key
 from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT
 from kb_build.symbols.api_names import OPERATORS, TYPES
+from kb_serve.recognise.chains.chain_starts import PROPERTIES
 from kb_serve.recognise.message_patterns import is_message
-from kb_serve.recognise.names.named.addresses import find_page
-from kb_serve.recognise.names.named.enum_values import is_quoted_value, is_value
-from kb_serve.recognise.names.named.lost_nodes import lost_nodes
+from kb_serve.recognise.named.addresses import find_page
+from kb_serve.recognise.named.enum_values import is_quoted_value, is_value
+from kb_serve.recognise.named.lost_nodes import lost_nodes
 from kb_serve.recognise.recognition import WHOLE_LABEL
-from kb_serve.recognise.resolving.chain_starts import PROPERTIES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import STRUCT
 from kb_build.symbols.paths import last_name
-from kb_serve.recognise.names.elsewhere.members_within import Within
+from kb_serve.recognise.elsewhere.members_within import Within
 
 if TYPE_CHECKING:
     from kb_serve.lookups.records import SymbolEntry

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.symbols.api_names import ID, STRUCT, TYPES
 from kb_build.symbols.flags import empty_when_new
-from kb_serve.recognise.names.elsewhere.elements import ADDED_BY
+from kb_serve.recognise.elsewhere.elements import ADDED_BY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key, words
 from kb_build.symbols.api_names import NODE, TYPES
 from kb_build.symbols.flags import NODE_FAMILIES, alike_nodes
-from kb_serve.recognise.names.likely.corrections import is_misspelling, nearest
-from kb_serve.recognise.notes import SIMILAR
-from kb_serve.recognise.recognition import MissingName
+from kb_serve.recognise.likely.corrections import is_misspelling, nearest
+from kb_serve.recognise.recognition import SIMILAR, MissingName
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import stem, stems_of, words
 from kb_build.symbols.api_names import BLEND_DATA, STRUCT
 from kb_build.symbols.paths import last_name
-from kb_serve.recognise.names.elsewhere.elements import ADDED_BY, REMOVED_BY, REMOVING, Elsewhere
-from kb_serve.recognise.names.elsewhere.held_collections import (
+from kb_serve.recognise.elsewhere.elements import ADDED_BY, REMOVED_BY, REMOVING, Elsewhere
+from kb_serve.recognise.elsewhere.held_collections import (
     BMESH,
     BMESH_TYPES,
     Held,

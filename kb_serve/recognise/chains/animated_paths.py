@@ -6,11 +6,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_serve.recognise.resolving.call_texts import arguments, texts_in
-from kb_serve.recognise.resolving.chains import ChainStep, find_chains
+from kb_serve.recognise.chains.call_texts import arguments, texts_in
+from kb_serve.recognise.chains.chains import ChainStep, find_chains
 
 if TYPE_CHECKING:
-    from kb_serve.recognise.resolving.chains import Chain
+    from kb_serve.recognise.chains.chains import Chain
 
 # Function of every thing in Blender → the name of its argument that is a path from the thing.
 PATHS = {

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key, words
 from kb_build.symbols.api_names import ID, OPERATORS
 from kb_build.symbols.flags import operator_given
-from kb_serve.recognise.names.by_words.operator_words import same_operator_words
-from kb_serve.recognise.names.elsewhere.elements import REMOVING
-from kb_serve.recognise.resolving.variables import variable_fit
+from kb_serve.recognise.by_words.operator_words import same_operator_words
+from kb_serve.recognise.chains.variables import variable_fit
+from kb_serve.recognise.elsewhere.elements import REMOVING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from kb_serve.lookups.records import SymbolEntry
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.names.by_words.operator_words import OperatorWords
+    from kb_serve.recognise.by_words.operator_words import OperatorWords
     from kb_serve.recognise.recognition import MissingName
 
 _FEW = 3

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import CONTEXT, ID, OBJECT, STRUCT, TYPES
-from kb_serve.recognise.names.elsewhere.elements import ADDING, REMOVING
-from kb_serve.recognise.names.elsewhere.held_collections import is_none_when_new, members_of
-from kb_serve.recognise.names.elsewhere.layers import in_layers
+from kb_serve.recognise.elsewhere.elements import ADDING, REMOVING
+from kb_serve.recognise.elsewhere.held_collections import is_none_when_new, members_of
+from kb_serve.recognise.elsewhere.layers import in_layers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

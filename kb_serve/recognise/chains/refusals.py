@@ -8,7 +8,7 @@ import ast
 import math
 from typing import TYPE_CHECKING
 
-from kb_serve.recognise.resolving.call_texts import arguments, texts_in
+from kb_serve.recognise.chains.call_texts import arguments, texts_in
 from kb_serve.signatures import places_of
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from kb_build.symbols.records import Parameter, Symbol
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.resolving.chains import Chain
+    from kb_serve.recognise.chains.chains import Chain
 
 # How many numbers a socket's value has, by its type; and of properties the types that are numbers.
 _NUMBERS_OF_SOCKETS = {"value": 1, "int": 1, "boolean": 1, "rgba": 4, "vector": 3, "rotation": 3}

@@ -23,20 +23,6 @@ _OF_ALL = frozenset({stem("object")})
 _LONG = 4  # letters of a word that may stand at the end of another: ``file``, of ``mainfile``
 
 
-def operator_of_class(name: str) -> str:
-    """The path of the operator whose class a name is, ``MESH_OT_rip``, by which macros hold its properties; empty for
-    other names.
-    """
-    module, mark, own = name.partition("_OT_")
-    return f"{OPERATORS}{module.lower()}.{own}" if mark else ""
-
-
-def known_operator_of_class(name: str, reader: BaseReader) -> str:
-    """The same of an operator that the base has; empty for others."""
-    path = operator_of_class(name)
-    return path if path and reader.entry(path) else ""
-
-
 class _Words(NamedTuple):
     """The stems of an operator's words and of its module's."""
 

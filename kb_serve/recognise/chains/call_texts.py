@@ -10,7 +10,7 @@ from kb_build.index.analysis import split_arguments
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_serve.recognise.resolving.chains import Chain
+    from kb_serve.recognise.chains.chains import Chain
 
 _ARGUMENT = re.compile(r"\s*(?:(\w+)\s*=(?!=))?\s*(.*)", re.DOTALL)
 _STRINGS = re.compile(r"""(["'])((?:(?!\1).)*)\1""")

@@ -7,7 +7,7 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import idf, stem, words
-from kb_serve.recognise.names.likely.corrections import is_misspelling, nearest
+from kb_serve.recognise.likely.corrections import is_misspelling, nearest
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping

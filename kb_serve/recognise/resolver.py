@@ -12,15 +12,15 @@ from kb_build.index.analysis import key
 from kb_build.symbols.api_names import COLLECTION, GROUPS, NODE, OBJECT, OPERATORS, SIDES, STRUCT, TYPES
 from kb_build.symbols.paths import is_socket, last_name
 from kb_build.symbols.python_values import METHODS, python_class
-from kb_serve.recognise.code.refusals import is_listed, refuses, refuses_call
-from kb_serve.recognise.names.by_words.operator_words import known_operator_of_class
-from kb_serve.recognise.names.elsewhere.holders import by_what_holds_it
-from kb_serve.recognise.resolving.chain_starts import ChainStarts
-from kb_serve.recognise.resolving.chain_values import ChainValue, ChainValues
-from kb_serve.recognise.resolving.chains import ChainStep
-from kb_serve.recognise.resolving.owners import Owners
-from kb_serve.recognise.resolving.subscripts import PROPERTIES_OF_OPERATORS, CustomProperties
-from kb_serve.recognise.resolving.variables import usual_classes
+from kb_serve.recognise.chains.chain_starts import ChainStarts
+from kb_serve.recognise.chains.chain_values import ChainValue, ChainValues
+from kb_serve.recognise.chains.chains import ChainStep
+from kb_serve.recognise.chains.operator_classes import known_operator_of_class
+from kb_serve.recognise.chains.owners import Owners
+from kb_serve.recognise.chains.refusals import is_listed, refuses, refuses_call
+from kb_serve.recognise.chains.subscripts import PROPERTIES_OF_OPERATORS, CustomProperties
+from kb_serve.recognise.chains.variables import usual_classes
+from kb_serve.recognise.elsewhere.holders import by_what_holds_it
 from simworlds.schemas.value_class import value_class
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from kb_serve.lookups.records import SymbolEntry
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.resolving.chains import Chain
+    from kb_serve.recognise.chains.chains import Chain
 
 _OBJECT_DATA = f"{TYPES}Object.data"
 # Pointer to an object → the class of that object's data.

@@ -1,0 +1,3 @@
+"""What code says: its expressions and how they hang together, what its variables are likely to be, what it gives and
+sets.
+"""
