@@ -89,6 +89,8 @@ ORDERS = {
             "hits",
             "hit_lines",
             "hit_blocks",
+            "hit_answers",
+            "query_text",
             "known",
             "docs_answer",
             "next_call",

@@ -4,27 +4,26 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from itertools import islice, zip_longest
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Literal
 
 from kb_build.index.analysis import stems_of
 from kb_build.symbols.api_names import TYPES
-from kb_serve.answer.asked.animated import animated
 from kb_serve.answer.asked.members import AskedMembers
 from kb_serve.answer.asked.sides import CODE, are_told, meant_by, sides_of
-from kb_serve.answer.budget import AnswerBlock, tokens
+from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.changes import changes_of, version_asked_about
 from kb_serve.answer.drafts import Draft, draft_of, paged, with_notes
-from kb_serve.answer.facts.asked_values import asked_of, asked_words
+from kb_serve.answer.facts.asked_values import asked_words
+from kb_serve.answer.hit_answers import HitAnswers
 from kb_serve.answer.hit_blocks import HitBlocks
-from kb_serve.answer.hit_lines import NAMES, HitLines
+from kb_serve.answer.hit_lines import HitLines
 from kb_serve.answer.hits import hits_of
 from kb_serve.answer.known.practice import Practice
-from kb_serve.answer.pages import MANUALS_WORDS
+from kb_serve.answer.query_text import in_one_line
 from kb_serve.answer.render import MarkdownRenderer
 from kb_serve.answer.said_twice import is_said
 from kb_serve.answer.topic.overview import STEPS, Topics
-from kb_serve.answer.ways.made_things import made_with
 from kb_serve.errors import BadQuery
 from kb_serve.query_limits import LEAST_TOKENS, LIMIT, MAX_LIMIT
 from kb_serve.rank.merging import SURE, QueryRanker, Ranking
@@ -33,25 +32,19 @@ from kb_serve.recognise.message_patterns import is_message
 from kb_serve.recognise.several import parts_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from kb_serve.answer.docs_answer import DocsAnswer
-    from kb_serve.answer.facts.asked_values import AskedOf
     from kb_serve.answer.hits import Hit
     from kb_serve.answer.topic.overview import TopicOverview
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.several import QuestionPart
 
-_LONG_WORDS = 250  # tokens of the manual's words on a symbol from which on other names go before them
 _KNOWN_OF = 3  # hits for a description among which what one has to know of them is looked for
 _NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
 _SETTINGS = 2  # of a topic that are hits before its classes
 _LESS = 0.02  # score from one id to the next, where nothing was ranked
-_LONGEST_WORD = 100  # no name of Blender's has as many letters
 _OPERATOR = re.compile(r"bpy\.ops\.\w+\.\w+")
-_COMMENT = re.compile(r"(?:^|(?<=\s))#\s[^\n]*\n", re.MULTILINE)  # of code, of which lines are joined
-_DOCSTRING = re.compile(r"(:\s*\n\s*)(?:\"{3}.*?\"{3}|'{3}.*?'{3})", re.DOTALL)
-_LONG_WORD = re.compile(rf"(\w{{{_LONGEST_WORD}}})\w+")
 
 
 class AnswerComposer:
@@ -62,9 +55,10 @@ class AnswerComposer:
         self._reader = reader
         self._notes_on_code = notes_on_code
         self._ranker = QueryRanker(reader)
-        self._renderer = MarkdownRenderer(reader)
+        renderer = MarkdownRenderer(reader)
         self._lines = HitLines(reader)
-        self._blocks = HitBlocks(reader, self._renderer, self._lines)
+        self._blocks = HitBlocks(reader, renderer, self._lines)
+        self._told = HitAnswers(reader, renderer, self._lines, self._blocks)
         self._topics = Topics(reader)
         self._practice = Practice(reader)
         self._members = AskedMembers(reader)
@@ -75,7 +69,7 @@ class AnswerComposer:
 
         Raises BadQuery for an empty one, a wrong limit, or a part that does not exist.
         """
-        text = _in_one_line(query)
+        text = in_one_line(query)
         if not text:
             raise BadQuery(
                 "The query is empty. Send a name (ClothSettings.quality), or say what you want to do."
@@ -90,7 +84,7 @@ class AnswerComposer:
 
     def _draft_with_notes(self, query: str, limit: int) -> Draft:
         told = self._notes_on_code(self._reader, query)
-        return with_notes(told, self._make_draft(_in_one_line(query), limit, told))
+        return with_notes(told, self._make_draft(in_one_line(query), limit, told))
 
     def _make_draft(self, text: str, limit: int, told: Sequence[str]) -> Draft:
         """The answer to a text of whose code ``told`` is said as well."""
@@ -123,11 +117,11 @@ class AnswerComposer:
         if meant := self._compared(text, (hits[0].id, *members), limit):
             return self._compare(text, meant, rows, limit, notes)
         if not ranking.named:
-            kind, blocks = "candidates", self._found(hits, rows, asked, members)
+            kind, blocks = "candidates", self._told.found(hits, rows, asked, members)
         else:
             names = ranking.recognition.arguments.get(hits[0].id, ())
             kind = "page" if hits[0].is_page else "schema"
-            blocks = self._named(hits, rows, text, names, members)
+            blocks = self._told.named(hits, rows, text, names, members)
         return draft_of(kind, hits, notes, blocks)
 
     def _changes(self, version: str, limit: int) -> Draft:
@@ -164,84 +158,6 @@ class AnswerComposer:
         said = (note for path in _OPERATOR.findall(steps) for note in self._practice.of(path, ""))
         return [*dict.fromkeys(said)]
 
-    def _named(
-        self,
-        hits: Sequence[Hit],
-        rows: Sequence[RankedId],
-        text: str,
-        arguments: Collection[str],
-        members: Sequence[str],
-    ) -> Iterator[AnswerBlock]:
-        """All of what a query names, with its ``arguments`` and ``members`` that the query names as well ahead of the
-        others; and a line for what else was found.
-        """
-        given = [*self._renderer.arguments(hits[0].id, arguments)]
-        yield from given
-        yield from self._renderer.sockets(hits[0].id, text)
-        whole = self._blocks.whole(hits[0], rows[0], asked_of((), arguments if given else ()))
-        yield from islice(whole, 1)
-        yield from self._animated(asked_words(text), hits, members)
-        yield from self._lines.asked_members(hits[0], members)
-        yield from _names_before_long(whole, [*self._others(hits, rows, members)])
-
-    def _found(
-        self,
-        hits: Sequence[Hit],
-        rows: Sequence[RankedId],
-        asked: Sequence[str],
-        members: Sequence[str],
-    ) -> Iterator[AnswerBlock]:
-        """The best hit in brief, its members that are asked for, and the others. A page says how, but code needs names:
-        they follow its heading.
-        """
-        found = self._lines.asked(hits[0], asked)
-        names = {value.argument for value in found if value.argument}
-        told = [*self._renderer.arguments(hits[0].id, names, unless_all_fit=True)]
-        own = f"{hits[0].id}."
-        near = tuple(name for name in rows[0].members if own + name not in members)
-        excerpt = self._blocks.excerpt(
-            hits[0], rows[0]._replace(members=near), asked_of(found, names if told else ())
-        )
-        others = [*self._others(hits, rows, members, asked)]
-        yield next(excerpt)
-        yield from self._animated(asked, hits, members)
-        yield from self._lines.asked_members(hits[0], members)
-        yield from told
-        yield from self._made(hits[0], asked_of(found))
-        if hits[0].is_page:
-            yield from (block for block in others if block.name == NAMES)
-            others = [block for block in others if block.name != NAMES]
-        yield from excerpt
-        yield from others
-
-    def _others(
-        self,
-        hits: Sequence[Hit],
-        rows: Sequence[RankedId],
-        members: Sequence[str],
-        asked: Sequence[str] = (),
-        told: int = 1,
-    ) -> Iterator[AnswerBlock]:
-        """A line for each hit behind the first ones that are ``told``. The ``members`` that are asked for are not among
-        them; behind a page they are their first.
-        """
-        left = [place for place in range(told, len(hits)) if hits[place].id not in members]
-        first = members if hits[0].is_page else ()
-        return self._lines.further(
-            [hits[place] for place in left], [rows[place] for place in left], asked, first=first
-        )
-
-    def _animated(
-        self, asked: Sequence[str], hits: Sequence[Hit], members: Sequence[str]
-    ) -> Iterator[AnswerBlock]:
-        """How the best hit is animated, or a member that is asked for."""
-        return animated(asked, (hits[0].id, *members), (hit.id for hit in hits), self._reader)
-
-    def _made(self, hit: Hit, asked: AskedOf) -> Iterator[AnswerBlock]:
-        """What the best hit makes with the values that are asked for."""
-        symbol = self._reader.symbol(hit.id) if asked.values else None
-        return made_with(symbol, asked.values, self._reader) if symbol else iter(())
-
     def _compared(self, text: str, told: Sequence[str], limit: int) -> list[RankedId]:
         """The things that a question compares, where the names that are ``told`` are not all of them."""
         sides = sides_of(text)
@@ -257,21 +173,13 @@ class AnswerComposer:
         limit: int,
         notes: Sequence[str],
     ) -> Draft:
-        """What each of some things is, then more of each, and what else was ``found``."""
+        """The answer to a question that compares what is ``meant``; ``found`` is what else there is."""
         told = {row.id for row in meant}
         rows = [*meant, *(row for row in found if row.id not in told)][:limit]
         hits = hits_of(rows, self._reader)
         asked = asked_words(text)
         members = self._members.of(text, asked, [row.id for row in meant])
-        blocks: list[AnswerBlock] = []
-        more: list[AnswerBlock] = []
-        for hit, row in zip(hits[: len(meant)], rows, strict=False):
-            head, *rest = self._blocks.excerpt(hit, row._replace(members=()))
-            blocks.append(head)
-            more += [AnswerBlock(f"### `{hit.id}`", hit.id), *rest] if rest else ()
-        blocks += self._lines.asked_members(hits[0], [path for path in members if path not in told])
-        blocks += more
-        blocks += self._others(hits, rows, members, asked, told=len(meant))
+        blocks = self._told.compared(hits, rows, asked, members, len(meant))
         return draft_of("candidates", hits, notes, blocks)
 
     def _answer_each(self, parts: Sequence[QuestionPart], ranking: Ranking, limit: int) -> Draft:
@@ -341,32 +249,7 @@ def _in_given_order(ids: Iterable[str], why: Literal["part", "topic"]) -> list[R
     return [RankedId(identifier, 1.0 - _LESS * place, why) for place, identifier in enumerate(ids)]
 
 
-def _in_one_line(query: str) -> str:
-    """A query without what no base holds: docstrings and comments of code, lone surrogates, endless words."""
-    text = _COMMENT.sub("", _DOCSTRING.sub(r"\1", query)).strip() or query
-    text = " ".join(text.encode(errors="ignore").decode().replace("\0", " ").split())
-    return _LONG_WORD.sub(r"\1", text)
-
-
 def _is_told(path: str, text: str) -> bool:
     """Whether a text has a name: the path, or its last part as code and its owner."""
     owner, _, name = path.removeprefix(TYPES).rpartition(".")
     return path in text or (bool(owner) and f"`{name}`" in text and f"`{owner}`" in text)
-
-
-def _names_before_long(whole: Iterable[AnswerBlock], others: Sequence[AnswerBlock]) -> Iterator[AnswerBlock]:
-    """The blocks of what a query names, with what else was found; the names of that go before a long text of the
-    manual: whoever asks for several wants these, and what it says can be read on.
-    """
-    late: list[AnswerBlock] = []
-    for block in whole:
-        is_long = block.name == MANUALS_WORDS and tokens(block.text) > _LONG_WORDS
-        if is_long and others:
-            late.append(block)
-        else:
-            yield block
-    if late:
-        yield from (block for block in others if block.name == NAMES)
-        yield from late
-        others = [block for block in others if block.name != NAMES]
-    yield from others
