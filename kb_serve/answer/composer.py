@@ -93,7 +93,7 @@ class AnswerComposer:
         if version := version_asked_about(text, self._reader):
             return self._changes(version, limit)
         is_name = (" " not in text or "[" in text) and self._reader.entry(text)
-        topic = "" if is_name else self._topics.find(text)
+        topic = "" if is_name or ranking.recognition.removed else self._topics.find(text)
         if topic:
             return self._overview(topic, ranking, limit)
         names = [match for match in ranking.recognition.matches if match.sure >= SURE]

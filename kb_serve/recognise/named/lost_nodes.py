@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 _NODE = frozenset({"node", "nodes"})
 _KINDS = ("", "Tex", "Bsdf")  # what the classes of shader nodes say besides
 _KIND_WORDS = frozenset({"bsdf", "texture"})
+_OF_OLD_TEXTURES = (
+    "TextureNodeTex"  # the trees of textures have kept a node for each, whatever others have lost
+)
 _SYSTEMS = frozenset({"compositing", "compositor", "function", "geometry", "shader"})  # not a node's name
 _LONGEST = 2  # words
 _OF_CLASSES = 2  # dots in the path of a class
@@ -26,7 +29,8 @@ def lost_nodes(words: Sequence[str], reader: BaseReader) -> Iterator[str]:
         is_named = word in _NODE and _SYSTEMS.isdisjoint(words[max(0, place - 1) : place])
         for length in range(min(place, _LONGEST), 0, -1) if is_named else ():
             said = "".join(one for one in words[place - length : place] if one not in _KIND_WORDS)
-            names = [key(f"{family}{kind}{said}") for family in NODE_FAMILIES for kind in _KINDS]
+            named = [f"{family}{kind}{said}" for family in NODE_FAMILIES for kind in _KINDS]
+            names = [key(name) for name in named if not name.startswith(_OF_OLD_TEXTURES)]
             if any(map(reader.names.by_key, names)):  # Blender has a node that is called so
                 break
             found = [

@@ -12,7 +12,8 @@ from asking import SEED, classes, of_data, paths
 from kb_build.store import Contents, write_base
 from kb_build.symbols.records import Page, Section
 from kb_serve.answer.budget import AnswerBlock, tokens
-from kb_serve.answer.composer import AnswerComposer, _names_before_long
+from kb_serve.answer.composer import AnswerComposer
+from kb_serve.answer.hit_answers import _names_before_long
 from kb_serve.answer.hit_lines import NAMES
 from kb_serve.answer.next_call import next_call
 from kb_serve.answer.pages import MANUALS_WORDS
