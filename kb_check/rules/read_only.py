@@ -12,6 +12,8 @@ cross.left_handle = 10  # reported: its inputs decide
 mesh.vertices[0].normal.x = 1  # reported: parts of what is read-only are, too
 mesh.texspace_size = (1, 1, 1)  # reported, unless the script names `use_auto_texspace`, which is on at first
 ```
+
+Not reported: ``self.cancel = True`` in a class of the script's. Its instances take values in the place of functions.
 """
 
 from __future__ import annotations
@@ -20,7 +22,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.values.types import Instance
+from kb_build.flow.values.types import UNKNOWN, Instance, LocalInstance, members
 from kb_build.symbols.api_names import HANDLERS, TYPES
 from kb_build.symbols.flags import freed_by, is_locked
 from kb_build.symbols.records import FREE_ON, READ_ONLY
@@ -72,6 +74,8 @@ def _check(script: Script) -> Iterator[Finding]:
         if not is_of_instance(script, row.node):
             continue
         if row.kind == "store" and script.package.has(_owners(symbols), row.value):
+            continue
+        if row.kind == "store" and _is_hidden(script, row, symbols):
             continue
         if all(symbol is not None and _is_refused(row, symbol) for symbol in symbols):
             first = symbols[0]
@@ -167,6 +171,13 @@ def _locked_kind(script: Script, row: Resolution, symbols: list[Symbol | None]) 
 
 def _owners(symbols: list[Symbol | None]) -> list[str]:
     return [symbol.owner for symbol in symbols if symbol]
+
+
+def _is_hidden(script: Script, row: Resolution, symbols: list[Symbol | None]) -> bool:
+    """Whether a value is put before functions that an instance of a class of the script's inherits: Python lets it."""
+    owner = script.type_of(row.node.value) if isinstance(row.node, ast.Attribute) else None
+    is_own = any(isinstance(kind, LocalInstance) for kind in members(owner or UNKNOWN))
+    return is_own and all(symbol is not None and symbol.kind == "function" for symbol in symbols)
 
 
 def _is_deleted(row: Resolution) -> bool:

@@ -74,3 +74,23 @@ def test_parts_of_what_is_read_only_are(check: Check, tmp_path: Path) -> None:
     )
     assert not run_statements(tmp_path, [tried])[0][0]
     assert check("read-only", tried) == []
+
+
+_OPERATOR = """\
+import bpy
+class Own(bpy.types.Operator):
+    bl_idname, bl_label = "own.own", "Own"
+    def execute(self, context):
+        self.cancel = True
+        self.get = 1
+        return {"FINISHED"} if self.cancel else {"CANCELLED"}
+"""
+
+
+@pytest.mark.blender
+def test_own_classes_may_have_values_in_the_place_of_functions(check: Check, tmp_path: Path) -> None:
+    runs = [_OPERATOR, "bpy.utils.register_class(Own)\nassert bpy.ops.own.own() == {'FINISHED'}"]
+    refused = "bpy.context.object.select_set = True"
+    assert [bool(error) for error, *_ in run_statements(tmp_path, [*runs, refused])] == [False, False, True]
+    assert check("read-only", _OPERATOR) == []
+    assert check("read-only", f"import bpy\n{refused}")
