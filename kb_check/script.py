@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 # The kinds of parts of a script that may stand for what an add-on registers.
 REGISTERED: frozenset[ResolutionKind] = frozenset({"attribute", "store", "text", "button", "name"})
+_VALUES: frozenset[ResolutionKind] = frozenset({"value", "compared"})
 _SIMPLE = (
     ast.Assign, ast.AnnAssign, ast.AugAssign, ast.Expr, ast.Return, ast.Delete, ast.Import, ast.ImportFrom,
 )  # fmt: skip
@@ -84,7 +85,7 @@ class Script:
         """The parts that surely stand for nothing that this Blender, or the package, has."""
         for row in self.resolutions(*kinds):
             lacking = row.missing and not row.symbols and not row.possible
-            if row.kind == "value" and row.value in self.own_identifiers:
+            if row.kind in _VALUES and row.value in self.package.identifiers:
                 continue
             if (
                 lacking
@@ -133,17 +134,6 @@ class Script:
             return False
         certain = self.package.has(row.missing, row.value, computed=False)
         return certain or not any(self.names.was(owner, row.value) for owner in row.missing)
-
-    @cached_property
-    def own_identifiers(self) -> frozenset[str]:
-        """What the script's classes call themselves: values of the enumerations that list such classes."""
-        return frozenset(
-            node.value.value
-            for node in self.all(ast.Assign)
-            if any(isinstance(target, ast.Name) and target.id == "bl_idname" for target in node.targets)
-            and isinstance(node.value, ast.Constant)
-            and isinstance(node.value.value, str)
-        )
 
     @cached_property
     def calls_of(self) -> dict[ast.expr, ast.Call]:

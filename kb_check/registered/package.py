@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import os
 from functools import cached_property
 from pathlib import Path, PurePath
@@ -14,7 +15,6 @@ from kb_check.registered.foreign_addons import brought_addons, enables_any, fore
 from kb_check.registered.package_roots import package_root
 
 if TYPE_CHECKING:
-    import ast
     from collections.abc import Iterable
 
     from kb_build.flow.analysis import Analysis
@@ -31,14 +31,14 @@ class Package:
         self._possible: set[str] = set()
         self._classes: dict[str, set[str]] = {}  # property → the classes that have it
         self._analyses: list[Analysis] = []
-        self._files: list[str] = []  # their dotted names
+        self._paths: list[str] = []  # theirs; empty where there is none
 
     def add(self, analysis: Analysis, possible: Iterable[str] = (), path: str = "") -> None:
         """Adds what a file registers. ``possible`` are names that a part which cannot be read may register, ``path``
         is its place, as :func:`paths_in_package` has it.
         """
         self._analyses.append(analysis)
-        self._files.append(module_name(path)[0])
+        self._paths.append(path)
         self._operators |= analysis.own_operators
         self._types |= analysis.own_types
         self._possible.update(possible)
@@ -63,6 +63,44 @@ class Package:
             for other in others
             for node in walk(other)
         )
+
+    def submodules(self, tree: ast.Module) -> frozenset[str]:
+        """The modules that may be bound in the file of a tree by being imported anywhere, ``from .sub import x``: those
+        right below it, if it is an ``__init__.py``. One without a path may be.
+        """
+        path = next(
+            (path for one, path in zip(self._analyses, self._paths, strict=True) if one.tree is tree), ""
+        )
+        package, is_package = module_name(path)
+        if path and not is_package:
+            return frozenset()
+        within = f"{package}."
+        found = {name.removeprefix(within) for name in self._files if is_package and name.startswith(within)}
+        for node in walk(tree):
+            if isinstance(node, ast.ImportFrom) and node.level == 1 and node.module:
+                found.add(node.module)
+        return frozenset(name.partition(".")[0] for name in found)
+
+    @cached_property
+    def identifiers(self) -> frozenset[str]:
+        """What the classes of all files call themselves: values of the enumerations that list such classes. Asked for
+        once all files were added.
+        """
+        trees = (one.tree for one in self._analyses if one.tree is not None)
+        return frozenset(
+            node.value.value
+            for tree in trees
+            for node in walk(tree)
+            if isinstance(node, ast.Assign)
+            and any(isinstance(target, ast.Name) and target.id == "bl_idname" for target in node.targets)
+            and isinstance(node.value, ast.Constant)
+            and isinstance(node.value.value, str)
+        )
+
+    @cached_property
+    def _files(self) -> list[str]:
+        """The dotted names of the files."""
+        return [module_name(path)[0] for path in self._paths]
 
     @cached_property
     def foreign_addon(self) -> str:

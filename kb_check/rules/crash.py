@@ -217,7 +217,7 @@ def _without_step(script: Script, call: CallSite) -> Iterator[Finding]:
 def _waits_for_people(script: Script) -> bool:
     """Whether a script registers what people call, who have a window."""
     return any(node.name == "register" for node in script.all(ast.FunctionDef)) or bool(
-        script.own_identifiers
+        script.package.identifiers
     )
 
 

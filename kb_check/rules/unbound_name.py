@@ -10,7 +10,8 @@ bpy.context.object.location = locaton  # reported
 
 Not reported: scripts that import nothing, which are pieces of others; with ``from … import *``, ``exec``,
 ``globals()`` and the like; the names of Blender's console (``C``, ``D``); what stands in a ``try`` that catches the
-NameError, or behind a condition that this Blender does not meet; annotations that Python does not read.
+NameError, or behind a condition that this Blender does not meet; annotations that Python does not read; in the
+``__init__.py`` of a package its modules, whose names Python binds there when one is imported.
 """
 
 from __future__ import annotations
@@ -58,6 +59,8 @@ def _check(script: Script) -> Iterator[Finding]:
     for node in script.all(ast.Name):
         if not isinstance(node.ctx, ast.Load) or node.id in _GIVEN or times_bound(script)[node.id]:
             continue
+        if node.id in _submodules(script):
+            continue
         unread = _unread(script) | _asked_for(script) if unread is None else unread
         if node not in unread and script.type_of(node) is not None and not is_tried(script, node, _ERROR):
             unbound.append(node)
@@ -100,6 +103,11 @@ def _asked_for(script: Script) -> set[ast.expr]:
     """The uses of names that the script asks for before."""
     asked = {node.value if isinstance(node, ast.Constant) else None for node in _asking(script).values()}
     return {node for node in script.all(ast.Name) if asked & {node.id, None}}
+
+
+@once_per_script
+def _submodules(script: Script) -> frozenset[str]:
+    return script.package.submodules(script.tree)
 
 
 def _unread(script: Script) -> set[ast.expr]:

@@ -66,7 +66,7 @@ def _check(script: Script) -> Iterator[Finding]:
             ):
                 continue
             name = node.value
-            if name in script.own_identifiers:
+            if name in script.package.identifiers:
                 continue
             is_label = wanted == "type" and not script.api.descends(f"{T}{name}", NODE)
             if script.api.is_class(f"{T}{name}") and not (is_label and _labelled(script, call, name)):
@@ -120,7 +120,7 @@ def _is_former_node(script: Script, name: object) -> bool:
 
 def _is_taken(script: Script, name: str) -> bool:
     """Whether a name is of a class of the script's or its package's, or a former one that this Blender still takes."""
-    is_own = name in script.own_identifiers or script.package.has(("bpy.types",), name)
+    is_own = name in script.package.identifiers or script.package.has(("bpy.types",), name)
     return is_own or bool(script.names.still_works(f"{T}{name}"))
 
 

@@ -187,7 +187,7 @@ def _of_trees(script: Script) -> Iterator[Finding]:
         node = call.argument("type") if path == f"{T}BlendDataNodeTrees.new" else None
         if not isinstance(node, ast.Constant) or not isinstance(value := node.value, str):
             continue
-        if script.api.is_class(f"{T}{value}") or value in script.own_identifiers:
+        if script.api.is_class(f"{T}{value}") or value in script.package.identifiers:
             continue
         meant = script.api.class_of_value(f"{T}NodeTree", value)
         is_built_in = value.startswith(NODE_FAMILIES) or _TREE.fullmatch(value)

@@ -56,3 +56,23 @@ def test_the_name_of_a_class_is_refused_where_blender_refuses_it(
     found = rule_checker.check(_LINES, rules=["unknown-value"])
     assert [one.span.line for one in found] == refused
     assert len(refused) == 14
+
+
+_ENGINE = (
+    "import bpy\nclass Own(bpy.types.RenderEngine):\n    bl_idname = 'OWN_RENDER'\n    bl_label = 'Own'\n"
+)
+_USED = """\
+import bpy
+render = bpy.context.scene.render
+if render.engine != "OWN_RENDER":
+    render.engine = "OWN_RENDER"
+"""
+
+
+def test_engines_of_a_package_are_values_in_all_its_files(rule_checker: Checker) -> None:
+    rules = ["never-true", "unknown-value"]
+    assert len(rule_checker.check(_USED, rules=rules)) == 2
+    assert rule_checker.check(_ENGINE + _USED, rules=rules) == []
+    reads = rule_checker.read_files({"addon/__init__.py": _ENGINE, "addon/panels.py": _USED})
+    package = rule_checker.package(reads.values())
+    assert rule_checker.check(reads["addon/panels.py"], package, rules) == []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING
 
 import pytest
@@ -92,6 +93,39 @@ def test_what_runs_has_no_finding(check: Check, tmp_path: Path) -> None:
 )
 def test_what_is_bound_elsewhere_has_no_finding(check: Check, code: str) -> None:
     assert check("unbound-name", code) == []
+
+
+_PACKAGE = {
+    "addon_in_parts/__init__.py": "from .tools import run\nrun(), tools.run, panels.draw",
+    "addon_in_parts/tools.py": "from . import panels\ndef run():\n    return panels.draw",
+    "addon_in_parts/panels.py": "draw = 1",
+}
+
+
+def test_modules_that_are_imported_are_bound_in_their_package(
+    rule_checker: Checker, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for path, code in _PACKAGE.items():
+        (tmp_path / path).parent.mkdir(exist_ok=True)
+        (tmp_path / path).write_text(code)
+    monkeypatch.syspath_prepend(tmp_path)
+    import_module("addon_in_parts")
+    assert _unbound(rule_checker, _PACKAGE) == []
+    wrong = {**_PACKAGE, "addon_in_parts/tools.py": "from .panels import draw\nrun = panels"}
+    assert _unbound(rule_checker, wrong) == ["addon_in_parts/tools.py"]
+    assert _unbound(rule_checker, {**_PACKAGE, "addon_in_parts/__init__.py": "import bpy\nparts.draw"})
+
+
+def test_code_without_a_place_may_be_a_package(check: Check) -> None:
+    assert check("unbound-name", "from .tools import run\ntools.run") == []
+    assert check("unbound-name", "from ..tools import run\ntools.run")
+
+
+def _unbound(checker: Checker, files: dict[str, str]) -> list[str]:
+    """The files that name what nothing binds."""
+    reads = checker.read_files(files)
+    package = checker.package(reads.values())
+    return [path for path, read in reads.items() if checker.check(read, package, ["unbound-name"])]
 
 
 def test_the_closest_name_is_told(check: Check) -> None:
