@@ -92,11 +92,12 @@ class ApiCalls(Callbacks):
         """Objects have got data of another kind: a mesh has become a curve."""
         state = self.here.scope.state
         self.spend(len(state.names) + len(state.chains))
-        for name, kind in state.names.items():
-            if isinstance(kind, Instance) and kind.cls == OBJECT and kind.traits:
-                state.names[name] = replace(kind, traits=())
         for chain in [chain for chain in state.chains if chain.endswith(".data")]:
             del state.chains[chain]
+        for held in (state.names, state.chains):
+            for text, kind in held.items():
+                if isinstance(kind, Instance) and kind.cls == OBJECT and kind.traits:
+                    held[text] = replace(kind, traits=())
 
     def call_function(self, callee: Function, call: ReadCall) -> Type:
         """What a function or a method of the API returns; what it is given is recorded."""
