@@ -33,6 +33,12 @@ def test_those_of_blender_say_what_they_are_called(rule_checker: Checker, tmp_pa
     assert all(part in told for part in ("`_rna_info`", "`_bl_ui_utils`", "`bpy.types`", "game engine"))
 
 
+def test_modules_offer_classes_from_elsewhere(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = ["from bpy.utils.toolsystem import ToolDef", "from bpy.utils.toolsystem import ToolDefs"]
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
+    assert [one.span.line for one in rule_checker.check("\n".join(lines))] == refused == [2]
+
+
 @pytest.mark.parametrize(
     "code",
     [

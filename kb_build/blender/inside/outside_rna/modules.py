@@ -335,11 +335,11 @@ class Walk:
         """Writes a member of a module, unless the module only imported it."""
         home = getattr(value, "__module__", None)
         if isinstance(value, type):
-            if home != name and attribute not in getattr(module, "__all__", (attribute,)):
+            listed = getattr(module, "__all__", None)
+            if home != name and listed is not None and attribute not in listed:
                 return
-            if value in self.seen or (
-                home not in {name, None, "builtins"} and not home.startswith(name.split(".")[0])
-            ):
+            is_foreign = home not in {name, None, "builtins"} and not home.startswith(name.split(".")[0])
+            if value in self.seen or (is_foreign and listed is None):
                 return
             if home == "builtins" and value.__name__ != attribute:
                 return
