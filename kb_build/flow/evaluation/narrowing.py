@@ -1,4 +1,4 @@
-"""What conditions tell: ``isinstance``, ``ob.type == 'MESH'``, ``hasattr``, ``is not None``."""
+"""What conditions tell: ``isinstance``, ``type(x) is y``, ``ob.type == 'MESH'``, ``hasattr``, ``is not None``."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Narrowing(Guards):
                 if name in {"hasattr", "getattr"}:
                     self._has(test, holds=holds)
                 elif holds:
-                    self._is_instance(name, test)
+                    self._is_instance(name, test.args)
                 else:
                     self._is_no_instance(name, test)
             case _:
@@ -140,6 +140,8 @@ class Narrowing(Guards):
                 self._without_none(left.target if isinstance(left, ast.NamedExpr) else left)
             self._answered(left, holds=not positive)
             return
+        if positive and isinstance(left, ast.Call) and isinstance(left.func, ast.Name):
+            self._is_instance(left.func.id, [*left.args, right], "type")
         if not positive or not isinstance(left, ast.Attribute) or left.attr not in DISCRIMINANTS:
             return
         texts: list[str] = []
@@ -179,11 +181,11 @@ class Narrowing(Guards):
         if (text := chain_text(area)) and all(spaces):
             self.here.scope.state.chains[f"{text}.{_ACTIVE_SPACE}"] = union(map(Instance, spaces))
 
-    def _is_instance(self, name: str, call: ast.Call) -> None:
-        """``isinstance(x, y)``."""
-        if name != "isinstance" or len(call.args) != 2:
+    def _is_instance(self, name: str, arguments: list[ast.expr], asking: str = "isinstance") -> None:
+        """``isinstance(x, y)``, or ``type(x) is y``."""
+        if name != asking or len(arguments) != 2:
             return
-        subject, answer = call.args
+        subject, answer = arguments
         wanted = self._type_of(answer)
         kinds = wanted.items if isinstance(wanted, Tuple) else members(wanted)
         found = [instance_of(kind) for kind in kinds]

@@ -73,6 +73,24 @@ class Holder:
     assert finding.symbol == "bpy.types.Mesh.zorn"
 
 
+_ASKED = "import bpy\ndef use(data, kind):\n    if {test}:\n        return data.zorn\n"
+
+
+@pytest.mark.parametrize(
+    ("test", "known"),
+    [
+        ("type(data) == bpy.types.Mesh", True),
+        ("type(data) is bpy.types.Mesh", True),
+        ("type(data) in (bpy.types.Mesh, bpy.types.Camera)", True),
+        ("type(data) != bpy.types.Mesh", False),
+        ("type(data) is kind", False),
+        ("kind(data) is bpy.types.Mesh", False),
+    ],
+)
+def test_the_type_itself_is_asked_for(rule_checker: Checker, test: str, known: bool) -> None:
+    assert bool(rule_checker.check(_ASKED.format(test=test))) is known
+
+
 _MANAGED = """\
 import bpy
 from contextlib import contextmanager
@@ -108,6 +126,7 @@ _CONVERTED: list[str] = [
     "ob.data.bevel_depth = 1.0",
     'bpy.ops.object.convert(target="CURVE")',
     "ob.data.bevel_depth = 1.0",
+    "bpy.context.view_layer.objects.active.data.bevel_depth = 1.0",
 ]
 
 
