@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.api_names import OPERATORS
+from kb_build.symbols.api_names import OBJECT, OPERATORS
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.object_data import OBJECT_DATA
 from kb_check.findings import Finding
 from kb_check.names.former_values import new_value
 from kb_check.registered.foreign_addons import may_register
@@ -49,6 +51,17 @@ def lacking_finding(
         rule, severity, script.name_span(row.node), message, lacking.symbol, lacking.instead,
         renaming(script, row, lacking), absent_paths(row),
     )  # fmt: skip
+
+
+def data_class_that_had(script: Script, row: Resolution) -> str:
+    """The class of data that had a name in another Blender, where it is sought in the data of an object of any type;
+    empty for none.
+    """
+    read = script.analysis.resolutions.get(row.node.value) if isinstance(row.node, ast.Attribute) else None
+    if read is None or read.symbols != (f"{OBJECT}.data",):
+        return ""
+    kinds = (f"{T}{name}" for name in OBJECT_DATA.values())
+    return next((kind for kind in kinds if script.names.had(kind, row.value)), "")
 
 
 def _brought(script: Script, row: Resolution) -> str:

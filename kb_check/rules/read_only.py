@@ -20,6 +20,7 @@ from __future__ import annotations
 
 import ast
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.flow.values.types import UNKNOWN, Instance, LocalInstance, members
@@ -28,6 +29,7 @@ from kb_build.symbols.flags import freed_by, is_locked
 from kb_build.symbols.records import FREE_ON, READ_ONLY
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
+from kb_check.rules.lacking import data_class_that_had, lacking_finding
 from kb_check.running.raised import LACKS
 from kb_check.scene.settings_before import set_before
 from kb_check.syntax.bindings import alias
@@ -80,6 +82,11 @@ def _check(script: Script) -> Iterator[Finding]:
         if all(symbol is not None and _is_refused(row, symbol) for symbol in symbols):
             first = symbols[0]
             assert first is not None
+            if not row.symbols and (lost := data_class_that_had(script, row)):
+                lacking = script.names.member(lost, row.value)
+                told = f"{lacking.message} `{first.path}` is read-only."
+                yield lacking_finding(script, RULE.id, row, replace(lacking, message=told))
+                continue
             yield _finding(script, row, first)
         elif row.kind == "store" and (kind := _locked_kind(script, row, symbols)):
             path = row.symbols[0]

@@ -38,7 +38,7 @@ from kb_check.calls.sites import nothing_from, other_way
 from kb_check.findings import Finding, Fix
 from kb_check.nodes.shown_sockets import socket_classes
 from kb_check.rule import Rule
-from kb_check.rules.lacking import lacking_finding
+from kb_check.rules.lacking import data_class_that_had, lacking_finding
 from kb_check.running.raised import LACKS
 from kb_check.running.tried import is_tried
 from kb_check.syntax.annotated import ONE_IS_WRONG, annotated
@@ -241,11 +241,8 @@ def _owner_that_had(script: Script, row: Resolution, owner: str) -> str:
     """
     if known := next((cls for cls in row.missing if script.names.had(cls, row.value)), ""):
         return known
-    read = script.analysis.resolutions.get(row.node.value) if isinstance(row.node, ast.Attribute) else None
-    if read is not None and read.symbols == ("bpy.types.Object.data",):
-        kinds = (f"bpy.types.{name}" for name in OBJECT_DATA.values())
-        if known := next((kind for kind in kinds if script.names.had(kind, row.value)), ""):
-            return known
+    if known := data_class_that_had(script, row):
+        return known
     below = [cls for cls in script.api.descendants(owner) if script.names.was(cls, row.value)]
     # What went from all of them at once was one thing: each kind of light had a contact shadow.
     spans = {script.names.reader.history.removed(f"{cls}.{row.value}") for cls in below}

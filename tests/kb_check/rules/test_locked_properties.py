@@ -94,3 +94,18 @@ def test_own_classes_may_have_values_in_the_place_of_functions(check: Check, tmp
     assert [bool(error) for error, *_ in run_statements(tmp_path, [*runs, refused])] == [False, False, True]
     assert check("read-only", _OPERATOR) == []
     assert check("read-only", f"import bpy\n{refused}")
+
+
+@pytest.mark.blender
+def test_what_one_kind_of_data_lost_is_told_where_another_has_it_locked(check: Check, tmp_path: Path) -> None:
+    lines = [
+        "import bpy",
+        "ob = bpy.data.objects.new('a', bpy.data.armatures.new('a'))",
+        "ob.data.layers = [True] * 32",
+    ]
+    assert [bool(error) for error, *_ in run_statements(tmp_path, lines)] == [False, False, True]
+    (found,) = check("read-only", "import bpy\nbpy.context.object.data.layers = [True] * 32")
+    assert found.symbol == "bpy.types.Armature.layers"
+    assert found.instead == ("bpy.types.Armature.collections",)
+    (found,) = check("read-only", "import bpy\nbpy.context.object.data.edges = []")
+    assert found.symbol == "bpy.types.Mesh.edges"
