@@ -84,14 +84,21 @@ def _calls_around(script: Script, node: ast.Name) -> list[ast.Call]:
     if function is None:
         return []
     bound = _bound_in(script, function).count(node.id) - (node.id in _parameters(function))
-    calls: list[ast.Call] = []
+    calls = _calls_in(script, function).get(node.id, [])
+    return calls if len(calls) == bound else []
+
+
+@once_for_each
+def _calls_in(_script: Script, function: FunctionDefinition) -> dict[str, list[ast.Call]]:
+    """Name → the calls whose results a function gives it."""
+    found: dict[str, list[ast.Call]] = {}
     for part in walk(function):
         match part:
-            case ast.Assign(targets=[ast.Name(id=node.id)], value=ast.Call() as call):
-                calls.append(call)
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call() as call):
+                found.setdefault(name, []).append(call)
             case _:
                 pass
-    return calls if len(calls) == bound else []
+    return found
 
 
 def _annotation_of_result(script: Script, call: ast.Call) -> frozenset[str]:

@@ -6,7 +6,7 @@ The work is counted, not timed: the lines of Python that are come to.
 from __future__ import annotations
 
 import sys
-from textwrap import dedent
+from textwrap import dedent, indent
 from typing import TYPE_CHECKING
 
 import pytest
@@ -169,6 +169,13 @@ _KINDS = {
         bm#.free()
         """,
     ),
+    "what a function makes and sets wrongly": (
+        "def make(ob):",
+        """
+        bone# = ob.data.edit_bones.new("A#")
+        bone#.lost@ = #
+        """,
+    ),
 }
 
 
@@ -180,7 +187,8 @@ def test_a_script_that_is_four_times_as_long_takes_about_four_times_the_work(
 
     def work(letter: str, times: int) -> int:
         parts = (_numbered(part.replace("@", letter), n) for n in range(times))
-        code = "\n".join(["import bpy, bmesh", begin, *parts])
+        body = "\n".join(parts)
+        code = "\n".join(["import bpy, bmesh", begin, indent(body, "    ") if begin.endswith(":") else body])
         return _counted(lambda: _check(checker, code))
 
     work("a", _FEW)  # what is kept of the base
