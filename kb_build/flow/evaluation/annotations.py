@@ -94,7 +94,8 @@ class Annotations(Core):
         if name in _LISTS:
             return Sequence(_LISTS[name], self._meant(inside[0], depth))
         if name in {"tuple", "Tuple"}:
-            if isinstance(inside[-1], ast.Constant) and inside[-1].value is ...:
+            # With one item it is one by the rules, and by whoever writes it often a row of any length.
+            if len(inside) == 1 or (isinstance(inside[-1], ast.Constant) and inside[-1].value is ...):
                 return Sequence("tuple", self._meant(inside[0], depth))
             return Tuple(tuple(self._meant(item, depth) for item in inside))
         if name in {"dict", "Dict", "Mapping"} and len(inside) == 2:

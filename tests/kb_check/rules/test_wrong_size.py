@@ -161,3 +161,11 @@ def test_buffers_are_told_that_blender_finds_too_short(check: Check, tmp_path: P
     ]
     assert told == refused
     assert 6 < len(refused) < len(lines)
+
+
+def test_a_tuple_that_is_annotated_with_one_item_may_have_more(check: Check) -> None:
+    code = (
+        "import mathutils\ndef place(size: tuple[{}]):\n    width, height = size\n    return width, height\n"
+    )
+    assert check("wrong-size", code.format("float")) == []
+    assert check("wrong-size", code.format("float, float, float"))
