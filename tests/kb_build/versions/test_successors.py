@@ -28,6 +28,7 @@ UNLISTED = (
     "rna_prop_ui.",
     "gpu.shader.from_builtin(",
     'bpy.types.CompositorNodeRLayers.outputs["Volume',
+    'bpy.types.CompositorNodeRLayers.outputs["GreasePencil',
 )
 OF_ADD_ONS = "Add-ons"  # the part of the release notes that a row is from
 OF_MODULES = "modules that Blender 5.0 brings"  # the source of what its internal modules were called

@@ -34,7 +34,7 @@ def test_former_names_are_refused_and_the_new_ones_are_there(rule_checker: Check
         for row in load_successors()
         if row.old.startswith(_OUTPUTS)
     ]
-    assert len(names) == 16
+    assert len(names) == 17
     former = [f"layers.outputs[{name!r}]" for name in names]
     found = rule_checker.check("\n".join([*start, *former]), rules=["former-pass"])
     new = [f"layers.outputs[{one.fix.edits[0].text}]" for one in found if one.fix]
