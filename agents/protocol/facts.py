@@ -110,6 +110,7 @@ class ObjectFacts(_Frozen):
     ``rendered``: renders show it. ``evaluated`` is false for objects that are hidden from the viewport or outside the
     view layer. ``keys`` counts keyframes by channel (``location``, ``rotation_euler``, …; ``other``) of curves that
     change over time; ``driven`` are the channels that drivers set; ``animated_shape_keys``: shape keys move it.
+    ``rigged``: a bone carries it, by parent or constraint, or its parent deforms it.
     ``force_reach``: a force field has no effect beyond this many metres; None for no limit.
     ``fault`` says why it could not be described; it is "" where all went well.
     """
@@ -138,6 +139,7 @@ class ObjectFacts(_Frozen):
     force_reach: float | None = None
     keys: dict[str, int] = Field(default_factory=dict[str, int])
     animated_shape_keys: bool = False
+    rigged: bool = False
     drivers: int = 0
     driven: tuple[str, ...] = ()
     light: str | None = None

@@ -46,7 +46,7 @@ ROLES: dict[Role, str] = {
 }
 
 DEFORMATION_KINDS: dict[DeformationKind, str] = {
-    "rig": "An armature, a lattice, shape keys or another deformer deforms it.",
+    "rig": "An armature, a lattice, shape keys or another deformer deforms it, or a bone carries it.",
     "sim_cloth": "The cloth solver moves it.",
     "sim_fluid": "The fluid solver makes or moves it: liquid, smoke or fire.",
     "sim_rigid": "The rigid-body solver moves it.",

@@ -65,11 +65,11 @@ def _is_active(solver: Solver) -> bool:
     return bool(solver.actors) and (solver.kind != "sim_particle" or bool(solver.caches))
 
 
-def has_rig(obj: LogicalObject) -> bool:
-    """Whether an armature, shape keys or another deformer that is no solver deforms an object."""
-    return any(
-        item.animated_shape_keys or item.has_modifier(_DEFORMERS) for item in (*obj.meshes, *obj.others)
-    )
+def has_rig(structure: SceneStructure, obj: LogicalObject) -> bool:
+    """Whether a deformer that is no solver deforms an object, or a bone carries it."""
+    if any(item.animated_shape_keys or item.has_modifier(_DEFORMERS) for item in (*obj.meshes, *obj.others)):
+        return True
+    return any(item.rigged for mesh in obj.meshes for item in structure.dependencies(mesh.name))
 
 
 def animated_objects(structure: SceneStructure, obj: LogicalObject) -> list[ObjectFacts]:

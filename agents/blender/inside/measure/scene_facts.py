@@ -17,6 +17,7 @@ from ..physics.caches import find_caches
 _TRANSFORMS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
 _CHANNELS = {*_TRANSFORMS, *(f"delta_{channel}" for channel in _TRANSFORMS)}
 # Properties whose animation moves nothing; the last are custom properties.
+_RIGGING_PARENTS = {"BONE", "ARMATURE", "LATTICE"}
 _WITHOUT_MOTION = ("hide_", "show_", "visible_", "color", "pass_index", "rigid_body.", "[")
 
 
@@ -146,6 +147,7 @@ def _object(obj, holders, geometry):
         "rigid_body": _rigid_body(obj),
         "keys": _keys(obj),
         "animated_shape_keys": _has_animated_shapes(obj),
+        "rigged": _is_rigged(obj),
         "drivers": len(obj.animation_data.drivers) if obj.animation_data else 0,
         "driven": sorted(_driven(obj)),
     }
@@ -208,9 +210,26 @@ def _constraint(constraint):
         )
     return {
         "type": constraint.type,
-        "on": not constraint.mute and constraint.influence > 0,
+        "on": _is_on(constraint),
         "target": target.name if target else None,
     }
+
+
+def _is_on(constraint):
+    return not constraint.mute and constraint.influence > 0
+
+
+def _is_rigged(obj):
+    """Whether a bone carries an object, as its parent or by a constraint, or its parent deforms it."""
+    if obj.parent is not None and obj.parent_type in _RIGGING_PARENTS:
+        return True
+    return any(
+        link.target is not None and link.target.type == "ARMATURE" and link.subtarget
+        for entry in obj.constraints
+        if _is_on(entry)
+        for link in (entry, *getattr(entry, "targets", ()))
+        if hasattr(link, "subtarget")
+    )
 
 
 def _rigid_body(obj):

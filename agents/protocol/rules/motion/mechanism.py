@@ -43,8 +43,9 @@ def _wrong_mechanisms(context: RuleContext, _measures: Measures) -> Iterator[Fin
         name = obj.name
         if deformation in SOLVERS:
             yield from _wrong_solver(context, obj, deformation)
-        elif deformation == "rig" and not has_rig(obj):
-            message = f"{name!r} is declared a rig, but no armature, lattice or shape key deforms it."
+        elif deformation == "rig" and not has_rig(structure, obj):
+            message = f"{name!r} is declared a rig, but no armature, lattice or shape key deforms it"
+            message += ", and no bone carries it."
             yield R15.finding((name,), message)
         elif deformation == "none" and (solvers := active_solvers(structure, obj)):
             yield R15.finding(

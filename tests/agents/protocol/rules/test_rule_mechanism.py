@@ -308,6 +308,24 @@ bones = bpy.data.objects.new("Bones", bpy.data.armatures.new("Bones"))
 bpy.data.collections["Actor"].objects.link(bones)
 post.modifiers.new("Armature", "ARMATURE").object = bones
 """
+HINGE = """
+bones = bpy.data.objects.new("Bones", bpy.data.armatures.new("Bones"))
+bpy.data.collections["Actor"].objects.link(bones)
+bones.parent = bpy.data.objects["Actor root"]
+bpy.context.view_layer.objects.active = bones
+bpy.ops.object.mode_set(mode="EDIT")
+bones.data.edit_bones.new("hinge").tail = (0, 0, 1)
+bpy.ops.object.mode_set(mode="OBJECT")
+"""
+ON_BONE = "post.parent, post.parent_type, post.parent_bone = bones, 'BONE', 'hinge'\n"
+TO_BONE = """
+link = post.constraints.new("COPY_ROTATION")
+link.target, link.subtarget = bones, "hinge"
+"""
+TO_BONES = """
+link = post.constraints.new("ARMATURE").targets.new()
+link.target, link.subtarget = bones, "hinge"
+"""
 KEYS = """
 for frame, x in ((1, 0), (9, 1)):
     key(bpy.data.objects["Actor root"], frame, location=(x, 0, 0))
@@ -328,6 +346,9 @@ post.particle_systems[0].settings.type = "HAIR"
     ("kind", "motion", "script"),
     [
         ("rig", "keyframe", ARMATURE + KEYS),
+        ("rig", "keyframe", HINGE + ON_BONE + KEYS),
+        ("rig", "keyframe", HINGE + TO_BONE + KEYS),
+        ("rig", "keyframe", HINGE + TO_BONES + KEYS),
         ("none", "keyframe", KEYS),
         ("none", "keyframe", OTHER + PUSHED),
         ("none", "none", ""),
@@ -348,6 +369,8 @@ def test_what_is_declared_and_done_is_right(
     ("kind", "motion", "script", "told"),
     [
         ("rig", "none", "", "declared a rig, but no armature"),
+        ("rig", "none", HINGE, "and no bone carries it"),
+        ("rig", "none", HINGE + TO_BONE + "post.constraints[0].mute = True", "and no bone carries it"),
         ("none", "keyframe", "", "has none"),
         ("none", "keyframe", "key(post, 1, location=(0, 0, 0))", "has none"),
         ("none", "keyframe", OTHER, "has none"),
