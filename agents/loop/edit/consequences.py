@@ -44,6 +44,9 @@ class Consequences:
         self._moves = bool(plan.actors) or not {"motion", "deformation_setup"}.isdisjoint(plan.stages)
         self._owned: dict[tuple[str, bool], str] = {}
         self._inside = _below({*before, *after} | added | removed, plan.targets, before, after)
+        # Each actor is to have a collection with its tags: grouping changes nothing else of what it holds.
+        self._groups = {f"{_COLLECTION} {actor.name}" for actor in plan.actors} & added
+        self._grouped = _below(self._groups, {actor.name for actor in plan.actors}, after)
         self.reasons: dict[str, str] = {}
         self._find()
 
@@ -114,10 +117,13 @@ class Consequences:
         for user, part in sorted(self._users[True][key]):
             if _kind(user) not in {_COLLECTION, _SCENE} and self._owner(user, now=True):
                 return f"{'carries' if part == 'parent' else 'used by'} {_name(user)}"
-        return ""
+        is_empty = not self._after.get(key, {}).get("data")
+        return "root of an actor" if is_empty and key in self._grouped else ""
 
     def _reason_of_collection(self, key: str) -> str:
         now = key in self._added
+        if key in self._groups:
+            return f"has the tags of the actor {_name(key)}"
         uses = (self._after if now else self._before).get(key, {})
         held = sorted({one for part in _HOLDING for one in uses.get(part, ())})
         if held and all(self._is_meant(one) for one in held):
@@ -144,16 +150,27 @@ class Consequences:
         if gone and not come and all(name in self._removed and self._is_meant(name) for name in gone):
             return f"{'held' if part in _HOLDING else 'used'} {_name(gone[0])}"
         match _kind(key):
-            case "Collection" | "Scene" if (gone or come) and all(map(self._is_meant, (*gone, *come))):
+            case "Collection" | "Scene" if (gone or come) and all(map(self._may_go_round, (*gone, *come))):
                 return f"{'holds' if part in _HOLDING else 'uses'} {_name((*come, *gone)[0])}"
             case "Collection":
                 return self._reason_of_bodies(key)
             case "Scene":
                 return self._reason_of_setting(part)
-            case "Object" if part == "transform" and "parent" in self._changed[key]:
-                return self._reason_of_part(key, "parent")
+            case "Object":
+                return self._reason_of_place(key, part, come)
             case _:
                 return ""
+
+    def _reason_of_place(self, key: str, part: str, come: Sequence[str]) -> str:
+        """Why an object has another parent, or its transform goes with that."""
+        if part == "transform" and "parent" in self._changed[key]:
+            return self._reason_of_part(key, "parent")
+        is_grouped = part == "parent" and come and self._grouped.issuperset({key, *come})
+        return f"grouped below {_name(come[0])}" if is_grouped else ""
+
+    def _may_go_round(self, key: str) -> bool:
+        """Whether a data-block may leave or enter a collection: it is meant to change, or grouped into an actor."""
+        return key in self._grouped or self._is_meant(key)
 
     def _is_meant(self, key: str) -> bool:
         return key in self.reasons or bool(self._owner(key, now=key not in self._removed))

@@ -163,6 +163,27 @@ def test_new_collections_around_a_planned_object_belong_to_it() -> None:
     assert outside(file, plan("Jug", kind="add")) == []
 
 
+def with_actor(**changes: Any) -> File:
+    """The spoon, which lay on the plate, as an actor with its tags; ``changes`` are further ones of the spoon."""
+    file = kitchen()
+    file["Object Spoon"] |= {"parent": ("", ["Object Spoon root"]), "transform": ("below the root", [])}
+    file["Object Spoon"] |= changes
+    file["Object Spoon root"] = thing("Spoon root", "", "")
+    file["Collection Spoon"] = {"objects": ("", ["Object Spoon", "Object Spoon root"])}
+    file["Collection Actors"] = {"children": ("", ["Collection Spoon"])}
+    file["Collection Set"] = {"objects": ("", ["Object Mug", "Object Plate", "Object Camera"])}
+    file["Scene Scene"] |= {"collection": ("", ["Collection Actors", "Collection Set"])}
+    return file
+
+
+def test_the_collections_that_an_actor_needs_for_its_tags_belong_to_it() -> None:
+    actor = {"name": "Spoon", "deformation_kind": "none", "motion_kind": "keyframe"}
+    spoon_moves = plan("Mug", stage="motion", actors=[actor])
+    assert outside(with_actor(), spoon_moves) == []
+    assert outside(with_actor(materials=("", ["Material Glaze"])), spoon_moves) == ["Object Spoon"]
+    assert "Collection Spoon" in outside(with_actor(), plan("Mug", stage="motion"))
+
+
 def test_what_goes_with_a_removed_object_is_not_outside() -> None:
     file = kitchen()
     for name in ("Object Plate", "Mesh Plate"):
