@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 from agents.protocol.judging.declared_contacts import allowed_crossings
 from agents.protocol.judging.move_advice import describe_closing_move
+from agents.protocol.judging.sizes import contact_gap
 from agents.protocol.measures.geometry import Crossing, CrossingsRequest
 from agents.protocol.measures.requests import Measures, Unmeasured
 from agents.protocol.rule import NotApplicable, Rule, RuleContext
-from agents.protocol.tolerances import PENETRATION
+from agents.protocol.tolerances import CONTACT, PENETRATION
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -99,6 +100,8 @@ def _finding(context: RuleContext, pair: Crossing, frame: int | None) -> Finding
     objects = context.structure.objects
     sizes = [size for name in names for size in objects[name].dimensions or ()]
     most = context.tolerances.noise(min(sizes, default=0.0))
+    if _are_kept_apart(context, names, frame):
+        most = max(most, contact_gap(context, names))
     if pair.depth <= most:
         return None
     when = f" at frame {frame}" if frame is not None else ""
@@ -121,6 +124,15 @@ def _finding(context: RuleContext, pair: Crossing, frame: int | None) -> Finding
     )
 
 
+def _are_kept_apart(context: RuleContext, names: Names, frame: int | None) -> bool:
+    """Whether the rigid-body solver has moved one of two bodies: what it lays on another sinks in by its own error."""
+    at = context.facts.frame if frame is None else frame
+    items = [context.structure.objects[name] for name in names]
+    bodies = [item.rigid_body for item in items if item.rigid_body is not None and item.rigid_body.enabled]
+    is_moved = any(body.active and not body.kinematic for body in bodies)
+    return is_moved and len(bodies) == len(items) and at > context.facts.frame_start
+
+
 def _movable(context: RuleContext, name: str, other: str) -> tuple[str, Names]:
     """What to move for a mesh: its whole object, unless the other mesh is part of that too."""
     obj, others = context.structure.logical_object_of(name), context.structure.logical_object_of(other)
@@ -135,10 +147,11 @@ V2 = Rule(
     "hard",
     "Two meshes that penetrate each other deeper than numerical noise are declared to touch.",
     "Meshes that penetrate each other flicker, explode in a simulation, and cannot be taken apart. Those that move are "
-    "compared at the first frame, at the last one, and at the one that is checked.",
+    "compared at the first frame, at the last one, and at the one that is checked. What the rigid-body solver has laid "
+    "on another body may sink in by ε.",
     f"Move them apart; {_DECLARE}.",
     _judge,
     _requests,
-    tolerances=PENETRATION,
+    tolerances=(*PENETRATION, *CONTACT),
 )
 RULES = (V2,)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 from scenes import a_plan, build, the_finding, verified
 
+from agents.blender.tools.bake import TOOL as BAKE
 from agents.blender.tools.group import TOOL as GROUP
 
 if TYPE_CHECKING:
@@ -156,6 +157,43 @@ def test_what_is_rendered_but_not_evaluated_is_undecided(session: LiveSession) -
     build(session, FLOOR + crate(0.05) + "crate.hide_viewport = True")
     found = the_finding(verified(session, "V2"))
     assert (found.objects, found.outcome, found.severity) == (("Planks",), "undecided", "hard")
+
+
+# A mesh that hangs lower than its body by as much as the body would sink in.
+LAID = """
+scene.frame_start, scene.frame_end = 1, 30
+ground, crate = bpy.data.objects["Ground"], bpy.data.objects["Planks"]
+rigid(ground, "PASSIVE", collision_shape="BOX")
+crate.location.z += 0.02
+rigid(crate, mesh_source="BASE")
+low = crate.modifiers.new("Low", "DISPLACE")
+low.direction, low.mid_level, low.strength = "Z", 0, -{0}
+"""
+LOWERED = """
+scene.frame_start, scene.frame_end = 1, 30
+for frame, z in ((1, 0.1), (30, -{0})):
+    key(root, frame, location=(0, 0, z))
+scene.frame_set(1)
+"""
+
+
+@pytest.mark.parametrize(
+    ("script", "depth", "noise"),
+    [(LAID, 0.0017, None), (LAID, 0.004, 0.002), (LOWERED, 0.0017, 0.001)],
+)
+def test_what_the_solver_has_laid_down_may_sink_in_as_far_as_contact_goes(
+    session: LiveSession, script: str, depth: float, noise: float | None
+) -> None:
+    build(session, FLOORS["a sheet"] + crate(0) + script.format(depth))
+    if script == LAID:
+        session.use(BAKE)
+    report = verified(session, "V2")
+    if noise is None:
+        assert report.passed == ("V2",)
+        return
+    found = the_finding(report)
+    assert (found.tolerance, found.frame) == (pytest.approx(noise, rel=1e-5), 30)
+    assert found.measured == pytest.approx(depth, abs=5e-4)
 
 
 @pytest.mark.parametrize("kind", ["box", "ball", "plane"])
