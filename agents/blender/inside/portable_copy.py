@@ -27,6 +27,7 @@ from .blend.cache_folders import (
     write_paths,
 )
 from .blend.file_io import SCENE_FILE, make_own, read_file, writing_failed
+from .physics import bake_inputs
 from .physics.caches import file_prefix, find_caches
 
 _UNUSED = (
@@ -109,6 +110,8 @@ def load(arguments, report):
     _bring_points(path, workspace)
     for folder in folders:
         _bring_folder(folder, workspace)
+    for scene in bpy.data.scenes:
+        bake_inputs.remember_opened(scene, find_caches(scene))
     return {
         "objects": len(bpy.data.objects),
         "version": ".".join(str(part) for part in version[:2]),

@@ -47,9 +47,17 @@ _PARTNERS = {
 
 def remember(scene, caches):
     """Notes the present inputs as those that these caches were baked from."""
+    if caches := [cache for cache in caches if cache.modifier is not None]:
+        _keep(scene, {**_known(scene), **{_key(cache): _inputs(scene, cache) for cache in caches}})
+
+
+def remember_opened(scene, caches):
+    """Notes the present inputs for the bakes of a file that was just opened, where it is not known what they are from.
+
+    Blender marks such a bake as outdated for only some of what may change: a force field is not among it.
+    """
     known = _known(scene)
-    known.update({_key(cache): _inputs(scene, cache) for cache in caches if cache.modifier is not None})
-    _keep(scene, known)
+    remember(scene, [each for each in caches if each.baked and not each.outdated and _key(each) not in known])
 
 
 def forget(scene, caches):

@@ -106,6 +106,32 @@ def test_a_file_that_is_opened_again_has_what_it_was_baked_from(session: LiveSes
     assert stale(session) == []
 
 
+BLOWN = f"""{PARTS}
+cloth()
+bpy.ops.object.effector_add(type="WIND", location=(-3, 0, 2))
+bpy.context.object.name = "Wind"
+"""
+BAKED_BY_CODE = """
+cache = bpy.data.objects["Flag"].modifiers[0].point_cache
+cache.frame_end = 12
+with bpy.context.temp_override(point_cache=cache):
+    bpy.ops.ptcache.bake(bake=True)
+"""
+
+
+@pytest.mark.parametrize("change", ["location.x = 3", "field.strength = 600"])
+def test_a_bake_that_came_with_a_file_is_older_than_what_is_changed_in_it(
+    session: LiveSession, change: str
+) -> None:
+    session.run(BLOWN + BAKED_BY_CODE)
+    session.use(SAVE, name="theirs", verify=False)
+    session.use(LOAD, path="theirs")
+    assert stale(session) == []
+    assert "outdated" not in session.use(STATE).text.lower()
+    assert stale(session, f"bpy.data.objects['Wind'].{change}") == ["cloth of 'Flag' (changed since: 'Wind')"]
+    assert "Outdated bakes" in session.use(STATE).text
+
+
 def test_looks_and_what_takes_no_part_leave_a_bake_as_it_is(session: LiveSession) -> None:
     session.run(f"{JELLY_ON_BALL}\nplane('Other', 9)\nemitter()")
     session.use(BAKE)
