@@ -3,6 +3,8 @@
 
 import math
 
+from mathutils import Matrix
+
 from ..blend.protocol_tags import TAGS
 from .modifier_stacks import constraints_of, modifiers_of
 from .rna_values import custom_properties, number, numbers, text, to_json
@@ -104,7 +106,7 @@ def object_facts(obj, collections, extents, visible, detail):
         if obj.parent_type != "OBJECT":
             entry["parent_type"] = f"{obj.parent_type} {text(obj.parent_bone)}".strip()
     evaluated = extents.evaluated(obj)
-    entry.update(_transform((evaluated or obj).matrix_world))
+    entry.update(_transform((evaluated or obj).matrix_world, obj.scale))
     box, instances = extents.measure(obj, evaluated)
     parts = {
         "tags": tags_of(obj),
@@ -137,8 +139,13 @@ def _provenance(obj):
     return entry
 
 
-def _transform(matrix):
+def _transform(matrix, own_scale):
+    """Place, rotation and scale in the world; what the object mirrors is mirrored along the same axes."""
     place, turn, scale = matrix.decompose()
+    signs = [math.copysign(1.0, factor) for factor in own_scale]
+    if min(signs) < 0 and (matrix.determinant() < 0) == (math.prod(signs) < 0):
+        _, turn, sizes = (matrix @ Matrix.Diagonal((*signs, 1.0))).decompose()
+        scale = [sign * size for sign, size in zip(signs, sizes, strict=False)]
     entry = {"location": numbers(place)}
     angles = [math.degrees(angle) for angle in turn.to_euler()]
     if not all(abs(angle) < 1e-3 for angle in angles):

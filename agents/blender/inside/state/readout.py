@@ -160,9 +160,7 @@ def _scene_facts(reading):
     if tags := tags_of(scene):
         facts["tags"] = tags
     if scene.timeline_markers:
-        facts["markers"] = shortened(
-            [f"{marker.name} {marker.frame}" for marker in scene.timeline_markers], 24
-        )
+        facts["markers"] = shortened([_marker(marker) for marker in scene.timeline_markers], 24)
     if len(bpy.data.scenes) > 1:
         facts["other_scenes"] = shortened([other.name for other in bpy.data.scenes if other != scene], 8)
     if layer is not None and len(scene.view_layers) > 1:
@@ -173,6 +171,12 @@ def _scene_facts(reading):
     if bpy.data.libraries:
         facts["libraries"] = shortened([library.filepath for library in bpy.data.libraries])
     return facts
+
+
+def _marker(marker):
+    """``close 20``; with the camera that it switches to, if it does."""
+    camera = f" (camera {marker.camera.name} from here)" if marker.camera is not None else ""
+    return f"{marker.name} {marker.frame}{camera}"
 
 
 def find_objects(names, everything):

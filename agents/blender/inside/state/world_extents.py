@@ -11,6 +11,7 @@ from .rna_values import numbers
 MOST_VERTICES = 4_000_000  # of one readout, in rotated meshes, which are measured vertex by vertex
 MOST_INSTANCES = 20_000
 _WITHOUT = {"EMPTY", "LIGHT", "CAMERA", "SPEAKER", "LIGHT_PROBE"}
+_BY_POINTS = {"CURVE"}  # whose bounding box has each point with its radius, which is 1 and no thickness
 _AS_MESH = {"CURVE", "SURFACE", "FONT", "META"}
 
 
@@ -69,7 +70,7 @@ class ExtentReader:
         if obj.type == "MESH" and not len(data.vertices):
             return None
         matrix = obj.matrix_world
-        if not _is_rotated(matrix):
+        if not _is_rotated(matrix) and obj.type not in _BY_POINTS:
             return _transformed_box(matrix, low, high) if low != high or obj.type == "MESH" else None
         if obj.type == "MESH":
             return self._by_vertices(data, matrix) or _transformed_box(matrix, low, high, rough=True)
@@ -128,7 +129,8 @@ class ExtentReader:
             if maker.type in _AS_MESH and obj.original == maker.original and matrix == maker.matrix_world:
                 continue  # the mesh of a text or curve itself, not an instance
             corners = obj.bound_box
-            box = _transformed_box(matrix, Vector(corners[0]), Vector(corners[6]), rough=_is_rotated(matrix))
+            rough = _is_rotated(matrix) or obj.type in _BY_POINTS
+            box = _transformed_box(matrix, Vector(corners[0]), Vector(corners[6]), rough=rough)
             entry = by_maker.setdefault(maker.original.name_full, [0, None])
             entry[0] += 1
             if entry[1] is None:

@@ -75,6 +75,42 @@ def test_a_turned_sphere_is_measured_by_its_vertices_not_by_its_box(session: Liv
     assert max(entry(found, "objects", "Sphere")["extent"]["size"]) <= 2.0001
 
 
+@pytest.mark.parametrize("bevel", [0, 0.1])
+def test_an_extent_of_a_curve_is_not_that_of_the_radius_of_its_points(
+    session: LiveSession, bevel: float
+) -> None:
+    code = f"""
+line = bpy.data.curves.new("Line", "CURVE")
+line.dimensions, line.bevel_depth = "3D", {bevel}
+spline = line.splines.new("POLY")
+spline.points.add(1)
+spline.points[0].co, spline.points[1].co = (0, 0, 0, 1), (2, 0, 0, 1)
+bpy.context.scene.collection.objects.link(bpy.data.objects.new("Line", line))
+"""
+    size = entry(read(session, code), "objects", "Line")["extent"]["size"]
+    assert size == pytest.approx([2, 2 * bevel, 2 * bevel], abs=0.02)
+
+
+@pytest.mark.parametrize("scale", [(-1, 1, 1), (-2, -1, 3), (-1, -1, -1)])
+@pytest.mark.parametrize("turn", [0, 30])
+def test_a_mirrored_object_has_its_own_rotation_and_scale(
+    session: LiveSession, scale: tuple[float, ...], turn: float
+) -> None:
+    code = f"{CUBE}o.scale = {scale}\no.rotation_euler.z = {math.radians(turn)}"
+    found = entry(read(session, code.replace("{0}", "")), "objects", "Cube")
+    assert found["scale"] == pytest.approx(scale)
+    assert found.get("rotation", [0, 0, 0]) == pytest.approx([0, 0, turn])
+
+
+def test_a_marker_says_which_camera_it_switches_to(session: LiveSession) -> None:
+    code = """
+close = bpy.data.objects.new("Close", bpy.data.cameras.new("Close"))
+bpy.context.scene.timeline_markers.new("wide", frame=1)
+bpy.context.scene.timeline_markers.new("near", frame=20).camera = close
+"""
+    assert "markers: wide 1, near 20 (camera Close from here)" in read(session, code).text
+
+
 def test_instances_belong_to_the_extent_of_what_makes_them(session: LiveSession) -> None:
     found = read(
         session,
