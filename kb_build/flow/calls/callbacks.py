@@ -57,7 +57,7 @@ class Callbacks(ScriptCalls):
         if not path.startswith(HANDLERS) or not name.startswith(_OF_SCENE) or name in _OF_TEXT:
             return
         graph = Instance(f"{T}Depsgraph") if name in _WITH_GRAPH else UNKNOWN
-        self._called_with(function, (Instance(f"{T}Scene"), graph))
+        self._called_with(function, (Instance(f"{T}Scene"), graph), fewest=1)
 
     def given_to_property(self, keywords: Keywords) -> None:
         """The functions that a property is declared with: ``self`` is of the class that it is declared in."""
@@ -69,7 +69,16 @@ class Callbacks(ScriptCalls):
         if isinstance(of, (ClassObject, LocalClass)):
             self._called_with(keywords.get("poll", UNKNOWN), (owner, instance_of(of)))
 
-    def _called_with(self, function: Type, values: Rows[Type]) -> None:
-        if isinstance(function, LocalFunction):
-            bound = () if function.receiver is None else (function.receiver,)
-            self.pass_to(function.number, (*bound, *values), {})
+    def _called_with(self, function: Type, values: Rows[Type], fewest: int | None = None) -> None:
+        """Passes on what a function gets: all of it, or the first ``fewest`` at least where Blender looks how many it
+        takes. What takes another number is never called, and which of its parameters was forgotten is not known.
+        """
+        if not isinstance(function, LocalFunction):
+            return
+        bound = () if function.receiver is None else (function.receiver,)
+        given = (*bound, *values)
+        arguments = self.functions[function.number].node.args
+        most = len(arguments.posonlyargs) + len(arguments.args)
+        least = len(given) if fewest is None else len(bound) + fewest
+        if arguments.vararg or (most >= least and most - len(arguments.defaults) <= len(given)):
+            self.pass_to(function.number, given, {})

@@ -35,6 +35,13 @@ _RIGHT = (
     "handlers.render_stats.append(lambda text: text.upper())",
     "def draw(menu, context):\n    menu.layout.label(text='x')\nmanager.popup_menu(draw, title='x')",
 )
+_OF_ANOTHER_NUMBER = (
+    "class Group(bpy.types.PropertyGroup):\n    one: bpy.props.PointerProperty("
+    "type=bpy.types.Object, poll=lambda one: one.display_type == 'WIRE')",
+    "class Group(bpy.types.PropertyGroup):\n    one: bpy.props.IntProperty("
+    "update=lambda context: context.view_layer.update())",
+    "def draw(context):\n    context.area.tag_redraw()\nmanager.popup_menu(draw, title='x')",
+)
 _ASKED = """
 import bpy
 seen = []
@@ -65,6 +72,14 @@ def test_what_a_callback_is_given_is_known(rule_checker: Checker, code: str, sym
 def test_what_is_right_in_a_callback_is_no_finding(rule_checker: Checker, code: str) -> None:
     found = rule_checker.check(f"{_BEFORE}{code}\n")
     assert [one.message for one in found if one.severity == "error"] == []
+
+
+@pytest.mark.parametrize("code", _OF_ANOTHER_NUMBER)
+def test_what_is_called_with_another_number_of_arguments_gets_none_of_them(
+    rule_checker: Checker, code: str
+) -> None:
+    rules = ["unknown-attribute", "own-property", "never-true"]
+    assert rule_checker.check(f"{_BEFORE}{code}\n", rules=rules) == []
 
 
 @pytest.mark.blender
