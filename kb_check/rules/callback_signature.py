@@ -15,7 +15,8 @@ class Grow(bpy.types.Operator):
         return {"FINISHED"}
 ```
 
-Since 4.4 an operator's `__init__` gets arguments as well, which it hands on: `super().__init__(*args, **kwargs)`.
+Since 4.4 `__init__` gets arguments as well, which it hands on: `super().__init__(*args, **kwargs)`. Reported for the
+types of which Blender makes instances without a window.
 """
 
 from __future__ import annotations
@@ -39,6 +40,13 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _PASSES_TO_INIT = (4, 4)
+# Those of which an instance was seen to be made so, with what ends where it cannot be made.
+_MADE = {
+    f"{T}AddonPreferences": "no such preferences can be read",
+    f"{T}Node": "no such node can be made", f"{T}NodeSocket": "no such socket can be made",
+    f"{T}NodeTree": "no such tree can be made", f"{T}Operator": "no such operator can run",
+    f"{T}PropertyGroup": "no such group can be read", f"{T}RenderEngine": "no such engine can render",
+}  # fmt: skip
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -49,17 +57,12 @@ def _check(script: Script) -> Iterator[Finding]:
                 yield finding
             seen.add(function)
         init = own.given("__init__")
-        if (
-            isinstance(init, FunctionDefinition)
-            and init not in seen
-            and own.path == f"{T}Operator"
-            and own.is_final
-        ):
+        if isinstance(init, FunctionDefinition) and init not in seen and own.path in _MADE and own.is_final:
             seen.add(init)
             if script.version >= _PASSES_TO_INIT and _takes_nothing(init):
                 yield _finding(
                     script, own, init,
-                    "gets arguments from Blender since 4.4, and this one takes none: no such operator can run. Write "
+                    f"gets arguments from Blender since 4.4, and this one takes none: {_MADE[own.path]}. Write "
                     "`def __init__(self, *args, **kwargs)`, and `super().__init__(*args, **kwargs)` in it",
                 )  # fmt: skip
 

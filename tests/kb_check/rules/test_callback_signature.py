@@ -143,6 +143,16 @@ class X(NodeSocket):
     def draw(self, context, layout, node): pass
 """
 
+# Base → what makes an instance of a class.
+_MADE_BY_BLENDER = {
+    "NodeTree": "bpy.data.node_groups.new('X', 'X')",
+    "Node": "class TreeX(NodeTree):\n    bl_label = 'tree'\n    bl_icon = 'NODETREE'\n"
+    "bpy.utils.register_class(TreeX)\nbpy.data.node_groups.new('X', 'TreeX').nodes.new('X')",
+    "PropertyGroup": "bpy.types.Scene.groupX = bpy.props.PointerProperty(type=X)\nbpy.context.scene.groupX.name",
+    "AddonPreferences": "addonX = bpy.context.preferences.addons.new()\naddonX.module = 'X'\n"
+    "addonX.preferences.bl_idname",
+}
+
 
 def test_what_is_refused_is_reported_and_nothing_else(check: Check, tmp_path: Path) -> None:
     functions = _FUNCTIONS.strip().split("\n\n")
@@ -166,6 +176,23 @@ def test_an_operator_whose_init_takes_nothing_cannot_run(check: Check, tmp_path:
     assert found <= refused
     assert parts[0] in found
     assert parts[1] not in refused
+
+
+def test_an_init_that_takes_nothing_makes_no_instance(check: Check, tmp_path: Path) -> None:
+    inits = ("(self): pass", "(self, *args, **kwargs): super().__init__(*args, **kwargs)")
+    heads = "bl_idname = 'X'", "bl_label = 'label'", "bl_icon = 'NODETREE'"
+    classes = [
+        "\n    ".join((f"class X({base}):", *heads, f"def __init__{init}"))
+        for init in inits
+        for base in _MADE_BY_BLENDER
+    ]
+    making = [*_MADE_BY_BLENDER.values()] * len(inits)
+    parts = [
+        part + made.replace("X", f"X{place}") + "\n"
+        for place, (part, made) in enumerate(zip(parts_of("\n\n".join(classes)), making, strict=True))
+    ]
+    refused = refused_parts(tmp_path, parts)
+    assert found_parts(check, "callback-signature", parts) == refused == {*parts[: len(_MADE_BY_BLENDER)]}
 
 
 def test_functions_of_unknown_decorators_are_left_alone(check: Check) -> None:
