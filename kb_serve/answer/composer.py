@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 from kb_build.index.analysis import stems_of
 from kb_build.symbols.api_names import TYPES
 from kb_serve.answer.asked.members import AskedMembers
-from kb_serve.answer.asked.sides import CODE, are_told, meant_by, sides_of
+from kb_serve.answer.asked.sides import are_told, meant_by, sides_of
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.changes import changes_of, version_asked_about
 from kb_serve.answer.drafts import Draft, draft_of, paged, with_notes
@@ -20,7 +20,7 @@ from kb_serve.answer.hit_blocks import HitBlocks
 from kb_serve.answer.hit_lines import HitLines
 from kb_serve.answer.hits import hits_of
 from kb_serve.answer.known.practice import Practice
-from kb_serve.answer.query_text import in_one_line
+from kb_serve.answer.query_text import in_one_line, is_plain
 from kb_serve.answer.render import MarkdownRenderer
 from kb_serve.answer.said_twice import is_said
 from kb_serve.answer.topic.overview import STEPS, Topics
@@ -28,7 +28,6 @@ from kb_serve.errors import BadQuery
 from kb_serve.query_limits import LEAST_TOKENS, LIMIT, MAX_LIMIT
 from kb_serve.rank.merging import SURE, QueryRanker, Ranking
 from kb_serve.rank.ranked_id import RankedId
-from kb_serve.recognise.message_patterns import is_message
 from kb_serve.recognise.several import parts_of
 
 if TYPE_CHECKING:
@@ -136,7 +135,7 @@ class AnswerComposer:
         """Paths of the members that a question asks for beside the first of ``rows``. Code says itself whose they are:
         there they are those that were ``found`` of the class that is the first row.
         """
-        if CODE.isdisjoint(text) and not is_message(text):
+        if is_plain(text):
             return self._members.of(text, asked, [row.id for row in rows])
         own = f"{rows[0].id}."
         return [

@@ -10,6 +10,7 @@ from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.facts.asked_values import asked_of, asked_words
 from kb_serve.answer.hit_lines import NAMES
 from kb_serve.answer.pages import MANUALS_WORDS
+from kb_serve.answer.query_text import is_plain
 from kb_serve.answer.ways.made_things import made_with
 
 if TYPE_CHECKING:
@@ -45,15 +46,21 @@ class HitAnswers:
         arguments: Collection[str],
         members: Sequence[str],
     ) -> Iterator[AnswerBlock]:
-        """All of what a query names, with its ``arguments`` and ``members`` that the query names as well ahead of the
-        others; and a line for what else was found.
+        """All of what a query names, with the ``arguments`` of its code, or those that its words speak of, and
+        ``members`` that the query names as well ahead of the others; and a line for what else was found.
         """
+        asked = asked_words(text)
         given = [*self._renderer.arguments(hits[0].id, arguments)]
+        found = self._lines.asked(hits[0], asked) if is_plain(text) and not given else ()
+        names = {value.argument for value in found if value.argument}
+        told = [*self._renderer.arguments(hits[0].id, names, unless_all_fit=True)]
         yield from given
         yield from self._renderer.sockets(hits[0].id, text)
-        whole = self._blocks.whole(hits[0], rows[0], asked_of((), arguments if given else ()))
+        names = arguments if given else names if told else ()
+        whole = self._blocks.whole(hits[0], rows[0], asked_of((), names))
         yield from islice(whole, 1)
-        yield from self._animated(asked_words(text), hits, members)
+        yield from told
+        yield from self._animated(asked, hits, members)
         yield from self._lines.asked_members(hits[0], members)
         yield from _names_before_long(whole, [*self._others(hits, rows, members)])
 

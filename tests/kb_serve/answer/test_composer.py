@@ -333,3 +333,12 @@ def test_other_names_go_before_a_long_text_of_the_manual_and_behind_a_short_one(
         assert [*_names_before_long([head, text, values], [names, found])] == wanted
     alone = AnswerBlock("word " * 1_000, MANUALS_WORDS)
     assert [*_names_before_long([head, alone, values], [])] == [head, alone, values]
+
+
+def test_the_arguments_that_words_ask_of_a_named_function_come_first(kb: KnowledgeBase) -> None:
+    told = kb.query("StringProperty with search callback").text
+    heading, arguments = told.index("## `bpy.props.StringProperty`"), told.index("**Asked for**")
+    assert heading < arguments < told.index("edit_text") < told.index("**Other parameters**")
+    assert told.count("- `search` (") == 1
+    assert "**Asked for**" not in kb.query("bpy.props.StringProperty").text
+    assert "**Asked for**" not in kb.query("bpy.props.StringProperty(name='search')").text
