@@ -173,7 +173,7 @@ class MarkdownRenderer:
             lines.append(text)
         if line := " · ".join(filter(None, (*facts(symbol), swizzle_text(symbol, self.reader)))):
             lines.append(line)
-        lines.extend(asked_of_classes(symbol))
+        lines.extend(asked_of_classes(symbol, self.reader))
         lines.extend(outcomes(symbol))
         if line := poll_line(symbol):
             lines.append(line)

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.symbols.records import Symbol
+    from kb_serve.reader import BaseReader
 
 
 def definition(symbol: Symbol) -> str:
@@ -23,12 +24,15 @@ def definition(symbol: Symbol) -> str:
     return "\n".join((*lines, f"    {head}", "        ..."))
 
 
-def asked_of_classes(symbol: Symbol) -> Iterator[str]:
-    """Sentences on what a class of a script's own must have, or on a function that it defines."""
+def asked_of_classes(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
+    """Sentences on what a class of a script's own must have, and on a function that it defines."""
     if DEFINED_ALWAYS in symbol.flags:
         yield "A class of your own has to define it: Blender calls it."
     elif DEFINED in symbol.flags:
         yield "A class of your own may define it: Blender calls it where it is."
-    if must := symbol.flagged(MUST_HAVE):
+    of_class = reader.symbol(symbol.owner) if symbol.is_called_back else symbol
+    must = [name for name in of_class.flagged(MUST_HAVE) if name != symbol.name] if of_class else []
+    if must:
         names = ", ".join(f"`{name}`" for name in must)
-        yield f"A class of your own must have {names}: Blender does not register it without."
+        which = "Such a class" if symbol.is_called_back else "A class of your own"
+        yield f"{which} must have {names}: Blender does not register it without."

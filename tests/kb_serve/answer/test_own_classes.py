@@ -42,6 +42,16 @@ def test_what_a_class_must_have_is_told(kb: KnowledgeBase, cls: str, names: str)
     assert f"A class of your own must have {names}: Blender does not register it" in kb.query(cls).text
 
 
+def test_a_function_that_blender_calls_names_what_its_class_must_have(kb: KnowledgeBase) -> None:
+    assert (
+        "Such a class must have `bl_label`, `bl_space_type`, `bl_region_type`:" in kb.query("Panel.draw").text
+    )
+    assert (
+        "Such a class must have `bl_label`, `bl_file_extensions`:" in kb.query("FileHandler.poll_drop").text
+    )
+    assert "must have" not in kb.query("Operator.report").text
+
+
 def test_what_is_told_is_enough_for_blender() -> None:
     def run(given: str) -> subprocess.CompletedProcess[str]:
         code = _REGISTER.replace("{given}", given)
