@@ -16,8 +16,8 @@ from ..physics.caches import find_caches
 
 _TRANSFORMS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
 _CHANNELS = {*_TRANSFORMS, *(f"delta_{channel}" for channel in _TRANSFORMS)}
-# Properties whose animation moves nothing; the last are custom properties.
 _RIGGING_PARENTS = {"BONE", "ARMATURE", "LATTICE"}
+# Properties whose animation moves nothing; the last are custom properties.
 _WITHOUT_MOTION = ("hide_", "show_", "visible_", "color", "pass_index", "rigid_body.", "[")
 
 
