@@ -23,6 +23,7 @@ from __future__ import annotations
 
 import ast
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.flow.values.types import Tuple
@@ -30,6 +31,7 @@ from kb_check.calls.resolved import callee_path
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
 from kb_check.running.tried import is_tried
+from kb_check.syntax.annotated import ONE_IS_WRONG, annotated
 from kb_check.syntax.literals import number
 from kb_check.values.buffers import buffer_of_rows, buffer_of_texts, short_buffer
 from kb_check.values.lengths import length_of, sliced
@@ -58,6 +60,7 @@ _SHOWN = 60  # characters of code that a sentence has room for
 _SPACE = 3  # components of what is in space
 _ROTATION, _WHOLE = (3, 3), (4, 4)
 _SIZES = range(2, 5)
+_ROWS = ("tuple", "Tuple")  # in annotations
 # Methods of matrices, and the sizes that they work on.
 _WANT = {
     "mathutils.Matrix.decompose": {_WHOLE}, "mathutils.Matrix.to_translation": {_WHOLE},
@@ -217,7 +220,10 @@ def _unpacked(script: Script, value: ast.expr, names: list[ast.expr]) -> Finding
     ):
         return None  # wrong-count names what the call gives
     told = in_words(size).capitalize() if size else f"A row of {length}"
-    return _finding(script, value, f"{told} cannot be unpacked into {len(names)} names.")
+    told += f" cannot be unpacked into {len(names)} names"
+    if any(annotated(script, value, name) for name in _ROWS):
+        return replace(_finding(script, value, f"{told}: {ONE_IS_WRONG}."), severity="warning")
+    return _finding(script, value, f"{told}.")
 
 
 def _part_set(script: Script, part: ast.Subscript | ast.Attribute, value: ast.expr) -> Finding | None:

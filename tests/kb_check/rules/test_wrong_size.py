@@ -168,4 +168,7 @@ def test_a_tuple_that_is_annotated_with_one_item_may_have_more(check: Check) -> 
         "import mathutils\ndef place(size: tuple[{}]):\n    width, height = size\n    return width, height\n"
     )
     assert check("wrong-size", code.format("float")) == []
-    assert check("wrong-size", code.format("float, float, float"))
+    (found,) = check("wrong-size", code.format("float, float, float"))
+    assert found.severity == "warning"  # Python does not check the annotation
+    (found,) = check("wrong-size", "import mathutils\nsize = (1, 2, 3)\nwidth, height = size\n")
+    assert found.severity == "error"
