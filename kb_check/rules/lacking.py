@@ -5,7 +5,9 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.api_names import OBJECT, OPERATORS
+from kb_build.flow.blender.facts import OF_OBJECT
+from kb_build.flow.values.types import Instance
+from kb_build.symbols.api_names import ID, OBJECT, OPERATORS
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.object_data import OBJECT_DATA
 from kb_check.findings import Finding
@@ -57,8 +59,11 @@ def data_class_that_had(script: Script, row: Resolution) -> str:
     """The class of data that had a name in another Blender, where it is sought in the data of an object of any type;
     empty for none.
     """
-    read = script.analysis.resolutions.get(row.node.value) if isinstance(row.node, ast.Attribute) else None
-    if read is None or read.symbols != (f"{OBJECT}.data",):
+    held = row.node.value if isinstance(row.node, ast.Attribute) else None
+    read = script.analysis.resolutions.get(held) if held else None
+    kind = script.type_of(held) if held else None
+    is_of_object = isinstance(kind, Instance) and kind.cls == ID and OF_OBJECT in dict(kind.traits)
+    if not is_of_object and (read is None or read.symbols != (f"{OBJECT}.data",)):
         return ""
     kinds = (f"{T}{name}" for name in OBJECT_DATA.values())
     return next((kind for kind in kinds if script.names.had(kind, row.value)), "")

@@ -107,5 +107,7 @@ def test_what_one_kind_of_data_lost_is_told_where_another_has_it_locked(check: C
     (found,) = check("read-only", "import bpy\nbpy.context.object.data.layers = [True] * 32")
     assert found.symbol == "bpy.types.Armature.layers"
     assert found.instead == ("bpy.types.Armature.collections",)
+    (found,) = check("read-only", "import bpy\narm = bpy.context.object.data\narm.layers = [True] * 32")
+    assert found.symbol == "bpy.types.Armature.layers"
     (found,) = check("read-only", "import bpy\nbpy.context.object.data.edges = []")
     assert found.symbol == "bpy.types.Mesh.edges"
