@@ -11,13 +11,15 @@ bpy.context.object.location = locaton  # reported
 Not reported: scripts that import nothing, which are pieces of others; with ``from … import *``, ``exec``,
 ``globals()`` and the like; the names of Blender's console (``C``, ``D``); what stands in a ``try`` that catches the
 NameError, or behind a condition that this Blender does not meet; annotations that Python does not read; in the
-``__init__.py`` of a package its modules, whose names Python binds there when one is imported.
+``__init__.py`` of a package its modules, whose names Python binds there when one is imported; placeholders of templates
+(``__SIZE__``).
 """
 
 from __future__ import annotations
 
 import ast
 import builtins
+import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.state.source_files import keeps_annotations
@@ -44,6 +46,7 @@ _GIVEN = frozenset(dir(builtins)) | {
     "_", "C", "D", "In", "Out", "WindowsError", "bpy", "display", "get_ipython",
     "basestring", "cmp", "execfile", "file", "long", "raw_input", "reduce", "reload", "unichr", "unicode", "xrange",
 }  # fmt: skip
+_PLACEHOLDER = re.compile(r"__[A-Z0-9_]+__")  # what a program fills in before a template runs
 _ERROR = ("NameError",)
 _ASKED = frozenset({"dir", "globals", "locals", "vars"})  # for the names that there are
 # May bind names that are computed: to these, or to ``sys.modules[__name__]``.
@@ -59,7 +62,7 @@ def _check(script: Script) -> Iterator[Finding]:
     for node in script.all(ast.Name):
         if not isinstance(node.ctx, ast.Load) or node.id in _GIVEN or times_bound(script)[node.id]:
             continue
-        if node.id in _submodules(script):
+        if _PLACEHOLDER.fullmatch(node.id) or node.id in _submodules(script):
             continue
         unread = _unread(script) | _asked_for(script) if unread is None else unread
         if node not in unread and script.type_of(node) is not None and not is_tried(script, node, _ERROR):

@@ -89,6 +89,7 @@ def test_what_runs_has_no_finding(check: Check, tmp_path: Path) -> None:
         "v = Vector((0, 0, 1))",  # a piece of a script
         "import bmesh\nbpy.context, C.object, D.objects",  # Blender's text editor and console bind these
         "import bpy\npass\nnowhere",  # a line for IPython in a notebook
+        "import bpy\nsize = __SIZE_2D__",  # filled in before it runs
     ],
 )
 def test_what_is_bound_elsewhere_has_no_finding(check: Check, code: str) -> None:
