@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import stems_of
+from kb_serve.answer.known.addon_recipes import ADDON_RECIPES
 from kb_serve.answer.known.advice import ADVICE
 from kb_serve.answer.known.recipes import RECIPES
 from kb_serve.recognise.chains.subscripts import NODES_MODIFIER, CustomProperties
@@ -61,7 +62,7 @@ class Practice:
         version = version_key(self._reader.meta.get("minor", ""))
         return tuple(
             advice
-            for advice in (*ADVICE, *RECIPES)
+            for advice in (*ADVICE, *RECIPES, *ADDON_RECIPES)
             if advice.since <= version < advice.before
             and (not advice.needs or self._reader.entry(advice.needs) is not None)
         )

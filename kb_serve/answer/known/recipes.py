@@ -188,9 +188,9 @@ RECIPES: tuple[Advice, ...] = (
             stems("data properties property values variable"),
         ),
         unless=stems(
-            "animate attribute bone class collection description driver edit enum export group handler icon keyframe "
-            "keying layer limit list max menu mesh min node normal normals operator panel precision range slider soft "
-            "step structure subtype template test tooltip types ui unit update"
+            "animate attribute bone callback class collection description driver edit enum export getter group handler "
+            "icon keyframe keying layer limit list max menu mesh min node normal normals operator panel precision "
+            "range setter slider soft step structure subtype template test tooltip types ui unit update"
         ),
     ),
     Advice(
