@@ -30,9 +30,10 @@ LAYOUT = f"{T}UILayout"
 # What shows properties: the places of a thing and of the name of its property.
 _SHOWING = {
     **dict.fromkeys(
-        ("prop", "prop_enum", "prop_menu_enum", "props_enum", "prop_search", "prop_tabs_enum", "prop_with_popover"),
+        ("prop", "prop_enum", "prop_menu_enum", "props_enum", "prop_tabs_enum", "prop_with_popover"),
         ((0, 1),),
     ),
+    "prop_search": ((0, 1), (2, 3)),
     "template_list": ((2, 3), (4, 5)),
 }  # fmt: skip
 _MACRO = f"{T}Macro"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from dataclasses import replace
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from kb_build.flow.blender.api import operator_path, part_of_macro
@@ -72,6 +73,8 @@ _PROPERTIES: dict[str, Type] = {
 _USUAL_VECTOR = (3,)  # the size of one that is declared without
 _CONVERTING = "bpy.ops.object.convert"
 _KEY = f"{T}KeyMapItem"
+_LAYOUT = f"{T}UILayout"
+_ANY_STRUCT = "AnyType"  # of a parameter that takes any struct
 _OPERATOR_RESULT = Sequence("set", STR)
 
 
@@ -120,6 +123,8 @@ class ApiCalls(Callbacks):
                     self.pass_to(kind.number, [Instance(callee.receiver.cls), Instance(f"{T}Context")], {})
         self.given_to_method(path, call)
         self._names(callee, name, call)
+        if symbol.owner == _LAYOUT:
+            self._names_beside(symbol, call)
         if name == "context_pointer_set" and call.arguments:
             self.registered[f"{T}Context", literal_text(call.argument(0)) or ANY] = call.argument(1)
         if isinstance(callee.receiver, Collection) and name == "get":
@@ -274,6 +279,38 @@ class ApiCalls(Callbacks):
         if found.symbols or found.missing or found.possible:
             kind = "text" if owner_place < 0 else "button"
             self.resolve(text_node, kind, text, found.symbols, found.missing, found.possible, sure=found.sure)
+
+    def _names_beside(self, symbol: Symbol, call: ReadCall) -> None:
+        """Records the other texts by which a layout finds properties of what stands before them.
+
+        ``layout.prop_search(ob, "parent", scene, "objects")`` has one of each kind.
+        """
+        names = [parameter.name for parameter in symbol.positional]
+        nodes = {
+            **dict(zip(names, call.node.args, strict=False)),
+            **{key.arg: key.value for key in call.node.keywords},
+        }
+        kinds = {**dict(zip(names, call.arguments, strict=False)), **call.keywords}
+        for holder, parameter in pairwise(symbol.positional):
+            node, owner = nodes.get(parameter.name), kinds.get(holder.name, UNKNOWN)
+            if node is None or holder.type != _ANY_STRUCT or parameter.type != "string":
+                continue
+            row = self.here.resolutions.get(node)
+            if row is None or row.kind != "button":
+                self._names_property(node, owner)
+
+    def _names_property(self, node: ast.expr, owner: Type) -> None:
+        """Records a text that names a property of an owner, and is not the one that a button shows."""
+        match node:
+            case ast.Constant(value=str(text)) if text.isidentifier() and owner is not UNKNOWN:
+                self.here.resolutions.pop(node, None)
+                found = self.attribute(owner, text)
+                if found.symbols or found.missing or found.possible:
+                    self.resolve(
+                        node, "text", text, found.symbols, found.missing, found.possible, sure=found.sure
+                    )
+            case _:
+                pass
 
     def _named_operator(self, node: ast.expr, kind: Type) -> None:
         text = literal_text(kind)

@@ -191,6 +191,24 @@ def test_operators_and_names_that_other_builds_have_are_no_finding(checker: Chec
     assert errors(checker, code) == [(8, "unknown-operator")]
 
 
+def test_every_text_by_which_a_layout_finds_a_property_is_read(checker: Checker) -> None:
+    code = """
+        import bpy
+        class P(bpy.types.Panel):
+            def draw(self, context):
+                ob = context.object
+                self.layout.prop_search(ob, "parent", bpy.data, "object")
+                self.layout.prop_search(ob, "parent", search_property="object", search_data=bpy.data)
+                self.layout.prop_search(ob, "parent", bpy.data, "objects", item_search_property="any")
+                self.layout.template_list("UI_UL_list", "any", ob, "material_slot", ob, "active_material_index")
+                self.layout.template_list("UI_UL_list", "", ob, "material_slots", ob, "active_material_indx")
+                self.layout.template_color_ramp(ob.active_material, "colour")
+                self.layout.template_color_ramp(self.found(), "colour")
+    """
+    places = [(line, "unknown-attribute") for line in (6, 7, 9, 10, 11)]
+    assert errors(checker, code) == places
+
+
 def test_files_of_a_package_know_what_the_others_register(checker: Checker) -> None:
     files = {
         "addon/__init__.py": "import bpy\nbpy.types.Scene.mine = bpy.props.IntProperty()",

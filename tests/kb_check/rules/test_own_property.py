@@ -214,6 +214,8 @@ bpy.utils.register_class(VIEW3D_PT_grow)
         ('self.layout.prop(context.scene.settings, "kind")', ""),
         ('self.layout.template_list("UI_UL_list", "", s, "part", s, "count")', "Closest: `parts`"),
         ('self.layout.template_list("UI_UL_list", "", s, "parts", s, "count")', ""),
+        ('self.layout.prop_search(s, "kind", s, "part")', "Closest: `parts`"),
+        ('self.layout.prop_search(s, "kind", s, "parts")', ""),
         ('self.label(text="x")', "`VIEW3D_PT_grow` has no `label`. The layout has it: `layout.label`."),
         ('self.bl_label', ""),
     ],
