@@ -10,6 +10,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.flow.blender.api import ARRAY
 from kb_build.flow.blender.facts import ELEMENT, ELEMENTS, LAYER_ITEM
 from kb_build.flow.values.types import (
     NONE,
@@ -129,7 +130,7 @@ def _plain_misfit(taker: Taker, kind: Type) -> Misfit | None:
     path, documented = taker.path, taker.documented
     if path.startswith(_MATHUTILS) and _rotations_only(documented):
         is_refused = isinstance(kind, (Plain, Tuple, Sequence))
-        if isinstance(kind, Instance) and kind.sure and kind.cls.startswith(_MATHUTILS):
+        if isinstance(kind, Instance) and kind.sure and kind.cls.startswith((_MATHUTILS, ARRAY)):
             is_refused = last_name(kind.cls) not in _ROTATIONS
         return Misfit("an Euler, a Quaternion or a Matrix", describe(kind)) if is_refused else None
     is_math = path.startswith(_MATHUTILS) and _OF_MATHUTILS.issuperset(_parts(documented))

@@ -7,11 +7,12 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from kb_build.flow.blender.api import operator_path, part_of_macro
+from kb_build.flow.blender.api import ARRAY, operator_path, part_of_macro
 from kb_build.flow.blender.facts import (
     BMESH_RESULTS,
     CLASS_NAMES,
     DERIVED_BY_SCRIPTS,
+    ELEMENT,
     NAME_OF_PROPERTY,
     OF_OPERATOR,
     OPEN_CALLS,
@@ -67,8 +68,10 @@ _NAMES_PROPERTY = {
 }  # fmt: skip
 _PROPERTIES: dict[str, Type] = {
     "FloatProperty": FLOAT, "IntProperty": INT, "BoolProperty": BOOL, "StringProperty": STR, "EnumProperty": STR,
-    "FloatVectorProperty": Sequence("array", FLOAT), "IntVectorProperty": Sequence("array", INT),
-    "BoolVectorProperty": Sequence("array", BOOL),
+    **{
+        f"{name}VectorProperty": Instance(ARRAY, ((ELEMENT, number),))
+        for name, number in (("Float", FLOAT), ("Int", INT), ("Bool", BOOL))
+    },
 }  # fmt: skip
 _USUAL_VECTOR = (3,)  # the size of one that is declared without
 _CONVERTING = "bpy.ops.object.convert"
@@ -331,6 +334,8 @@ class ApiCalls(Callbacks):
             return Collection(element, "bpy.types.bpy_prop_collection_idprop", "", UNKNOWN)
         if name == "FloatVectorProperty" and "subtype" in keywords:
             return self._vector(keywords)
+        if isinstance(keywords.get("size"), Tuple):  # of rows
+            return Instance(ARRAY, ((ELEMENT, UNKNOWN),))
         return _PROPERTIES.get(name, UNKNOWN)
 
     def _vector(self, keywords: Keywords) -> Type:

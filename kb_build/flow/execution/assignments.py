@@ -199,9 +199,8 @@ class Assignments(Guards, Annotations):
             self.check_value(found.type, value)
         elif found.possible and found.sure and not found.missing and value is not None:
             self.check_possible(owner, target.attr, found.possible, value)
-        # A vector, given to a colour, becomes a colour; an array takes the numbers in.
-        is_row = is_math(found.type) or (isinstance(found.type, Instance) and found.type.cls == ARRAY)
-        converts = is_math(kind) and is_row
+        # A vector, given to a colour, becomes a colour; either takes the numbers of an array in, which takes theirs.
+        converts = _is_row(kind) and _is_row(found.type)
         holds = (
             isinstance(kind, (Instance, LocalInstance)) and isinstance(found.type, Instance) and not converts
         )
@@ -233,3 +232,8 @@ class Assignments(Guards, Annotations):
         if found is None and self.has_by_api(owner.number, name):
             return
         self.classes[found[1] if found else owner.number].bind(name, general(kind))
+
+
+def _is_row(kind: Type) -> bool:
+    """Whether a value is a vector or its like, or an array."""
+    return is_math(kind) or (isinstance(kind, Instance) and kind.cls == ARRAY)

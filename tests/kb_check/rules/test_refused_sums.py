@@ -86,3 +86,35 @@ def test_products_of_two_transformations_by_item_are_warned_of(rule_checker: Che
     assert sorted(found) == transforming
     assert len(found) > 15
     assert all(one.fix and not one.fix.sure for at, one in found.items() if " *= " not in lines[at - 1])
+
+
+_DECLARED = """\
+class Group(bpy.types.PropertyGroup):
+    plain: bpy.props.FloatVectorProperty()
+    moved: bpy.props.FloatVectorProperty(subtype='TRANSLATION')
+    counts: bpy.props.IntVectorProperty()
+    rows: bpy.props.FloatVectorProperty(size=(4, 4))
+bpy.utils.register_class(Group)
+bpy.types.Scene.group = bpy.props.PointerProperty(type=Group)
+group = bpy.context.scene.group
+"""
+_OF_ARRAYS = (
+    "ob.location + group.plain", "ob.location += group.plain", "ob.location + group.moved",
+    "ob.location += group.moved", "ob.location - group.counts", "vector * group.plain",
+    "ob.location + Vector(group.plain)", "group.plain[0] + group.plain[1]", "group.counts[0] * vector",
+    "matrix @ group.rows", "matrix @ Matrix(group.rows)", "group.rows[0][1] * vector",
+    "ob.location = group.plain; ob.location + vector", "ob.location = ob.bound_box[0]; ob.location += vector",
+    "ob.color = (1, 1, 1, 1); group.plain = ob.location; group.plain + vector",
+    "group.moved = group.plain; group.moved + vector", "light.color = group.plain; light.color + vector",
+)  # fmt: skip
+
+
+def test_arrays_are_no_vectors_and_become_none_where_they_are_assigned(
+    rule_checker: Checker, tmp_path: Path
+) -> None:
+    made = f"{_MADE}{_DECLARED}"
+    answers = run_statements(tmp_path, [made, *_OF_ARRAYS])[1:]
+    refused = {line for line, (error, *_) in zip(_OF_ARRAYS, answers, strict=True) if error}
+    found = {line for line in _OF_ARRAYS if rule_checker.check(f"{made}{line}\n", rules=["refused-product"])}
+    assert found == refused
+    assert 4 < len(found) < len(_OF_ARRAYS)
