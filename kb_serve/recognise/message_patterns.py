@@ -177,7 +177,7 @@ _OF_CLASS = re.compile(r"'(\w+)' object\b")
 _WORDING = re.compile(
     r"""bpy_struct:\ item\.attr\s*=\s*val:|bpy_\w+\[(?:key|index|slice)\](?:\ =\ value)?:|BMElemSeq\[index\]:
     |bpy_prop_collection:\ attribute\ "\w+"\ not\ found|cannot\ create\ '[\w.]+'\ instances
-    |'_Restrict(?:Context|Data)'\ object
+    |'?_Restrict(?:Context|Data)'?\ object
     |(?:object\ )?has\ no\ attribute\ '\w+'|\bobject\ has\ no\ attribute\ \w+
     |and\ no\ __dict__\ for\ setting\ new\ attributes
     |Converting\ py\ args\ to\ operator\ properties::?|keyword\ "\w+"\ (?:is\ invalid|unrecognized)

@@ -41,7 +41,6 @@ NAMELESS_MESSAGES = (
     *FILES,
     *MODES,
 )
-_FIRST_PARTS = tuple((message.parts[0], message) for message in NAMELESS_MESSAGES)
 _ANYWHERE = (
     (
         " not found in ()",
@@ -71,8 +70,8 @@ class NamelessMessages:
 
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds what such a message is about, with what helps."""
-        for part, message in _FIRST_PARTS:  # nearly always that decides
-            if part in query and message.is_in(query) and self._is_told(message):
+        for message in NAMELESS_MESSAGES:
+            if message.is_in(query) and self._is_told(message):
                 for rank, path in enumerate(message.paths):
                     if "/" not in path or self._reader.manual.is_page(path):
                         recognition.add(path, _SURE - 0.03 * rank, "error message")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import pytest
@@ -401,6 +402,25 @@ def test_blender_says_each_of_the_messages(messages: list[str]) -> None:
     assert [line for line, said in zip(_STATEMENTS, messages, strict=True) if not said] == []
     unsaid = [one for one in NAMELESS_MESSAGES if not any(one.is_in(said) for said in messages)]
     assert unsaid == []
+
+
+def test_a_message_that_begins_with_a_name_is_known_without_its_quotes(messages: list[str]) -> None:
+    told = [
+        (one, said)
+        for one in NAMELESS_MESSAGES
+        for said in messages
+        if re.match(r"'\w+' object", one.parts[0]) and one.is_in(said)
+    ]
+    bare = {said: said.replace("'", "").replace('"', "") for _, said in told}
+    assert all(one.is_in(bare[said]) for one, said in told)
+    assert all(sum(one.is_in(text) for one in NAMELESS_MESSAGES) == 1 for text in bare.values())
+    assert len(bare) > 4
+
+
+def test_a_part_that_begins_with_a_quote_begins_with_a_word() -> None:
+    known = [one for one in NAMELESS_MESSAGES if one.parts[0].startswith("'set' object")]
+    assert any(one.is_in("AttributeError: set object has no attribute location") for one in known)
+    assert not any(one.is_in("AttributeError: Dataset object has no attribute location") for one in known)
 
 
 def test_each_message_leads_to_what_it_is_about(kb: KnowledgeBase, messages: list[str]) -> None:

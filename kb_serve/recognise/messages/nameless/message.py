@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
+from functools import lru_cache
+
+_QUOTES = str.maketrans("", "", "'\"")
+_NAME_FIRST = re.compile(r"(['\"])\w+\1 ")
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,5 +25,23 @@ class NamelessMessage:
     lacking: str = ""
 
     def is_in(self, query: str) -> bool:
-        """Whether a query holds the message."""
-        return all(part in query for part in self.parts) and not any(part in query for part in self.without)
+        """Whether a query holds the message, be it typed without the quotes of a name."""
+        unquoted = f" {_of_query(query)}"
+
+        def has(part: str) -> bool:
+            return part in query or bool((bare := _of_part(part)) and bare in unquoted)
+
+        return all(map(has, self.parts)) and not any(map(has, self.without))
+
+
+@lru_cache(maxsize=8)  # asked for each message
+def _of_query(query: str) -> str:
+    return query.translate(_QUOTES)
+
+
+@lru_cache(maxsize=1024)
+def _of_part(part: str) -> str:
+    """A part without the quotes of the name that it begins with, where a word begins; empty for others, which quotes
+    tell from other messages.
+    """
+    return f" {part.translate(_QUOTES)}" if _NAME_FIRST.match(part) else ""
