@@ -27,8 +27,8 @@ class RunTask:
     An ``edit`` has no scene plan; it is judged without what was ``known`` of the file before, and, unless the file is
     ``tagged`` (keeps the scene protocol), without the rules of its layout. ``actors`` are those that move;
     of an edit, ``declared`` says by what, ``targets`` are what its plan changes, ``mentioned`` objects that it speaks
-    of besides, ``old`` the objects that the file had, and ``unplanned`` finds what has changed that its plan does not
-    ask for.
+    of besides, ``old`` the objects that the file had, and ``off_plan`` finds what has changed that its plan does not
+    ask for, and what moves without the tags that it asks for.
     ``before`` is a still of the file as it was, at ``before_frame``, of ``before_width`` pixels and of
     ``before_samples`` a pixel, and ``goal`` a picture of what it is to look like.
     """
@@ -43,7 +43,7 @@ class RunTask:
     targets: tuple[str, ...] = ()
     mentioned: tuple[str, ...] = ()
     old: tuple[str, ...] = ()
-    unplanned: Callable[[Stage], list[Finding]] | None = None
+    off_plan: Callable[[Stage], list[Finding]] | None = None
     before: Picture | None = None
     before_frame: int | None = None
     before_width: int | None = None

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 from agents.loop.algorithm import ALL_AT_ONCE, build, finish
 from agents.loop.asset_library import prompt_with_assets
 from agents.loop.edit.baseline import format_known
+from agents.loop.edit.declared_mechanisms import undeclared
 from agents.loop.edit.inputs import picture
 from agents.loop.edit.untouched import blocks, compared, unplanned
 from agents.loop.errors import Unusable
 from agents.loop.record.events import PlanMade, ReferenceKept
-from agents.loop.review.evidence import still, still_samples, still_width
+from agents.loop.review.evidence import moves, still, still_samples, still_width
 from agents.loop.review.verdicts import verify
 from agents.loop.running.position import START
 from agents.loop.running.run_tools import RENDER, RUNNER
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from agents.plan.edit import EditPlan
     from agents.plan.part import Stage
     from agents.plan.scene import RenderSettings
+    from agents.protocol.findings import Finding
 
 _FIRST: Stage = "modeling"
 
@@ -103,5 +105,11 @@ def _task(run: Run, plan: EditPlan, before: Blocks) -> RunTask:
         targets=tuple(dict.fromkeys(name for task in plan.tasks for name in task.targets)),
         mentioned=tuple(mentioned_in(plan, before.objects)),
         old=before.objects,
-        unplanned=partial(unplanned, run, before, plan),
+        off_plan=partial(_off_plan, run, before, plan),
     )
+
+
+def _off_plan(run: Run, before: Blocks, plan: EditPlan, stage: Stage) -> list[Finding]:
+    """What has changed without being asked for, and what moves without its mechanism's tags. Raises RunError."""
+    untagged = undeclared(run, stage, plan.actors) if plan.actors and moves(stage) else []
+    return [*unplanned(run, before, plan, stage), *untagged]

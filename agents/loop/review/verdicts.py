@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from agents.loop.edit.baseline import format_new, told_since
-from agents.loop.edit.declared_mechanisms import undeclared
 from agents.loop.record.events import Reviewed, Verified
-from agents.loop.review.evidence import evidence, moves
+from agents.loop.review.evidence import evidence
 from agents.loop.review.withdrawals import as_soft
 from agents.loop.running.run_tools import VERIFIER, VERIFY
 from agents.plan.tactical import Review
@@ -55,10 +54,8 @@ def verify(run: Run, stage: Stage, task: RunTask) -> VerifierVerdict:
     if outcome.failed or "findings" not in outcome.data:
         return _undecided(outcome.text, task)
     findings, text = told_since(task.known, outcome)
-    if task.declared and moves(stage) and (untagged := undeclared(run, stage, task.declared)):
-        findings, text = [*untagged, *findings], f"{format_new(untagged)}\n{text}"
-    if task.unplanned is not None and (unplanned := task.unplanned(stage)):
-        findings, text = [*unplanned, *findings], f"{format_new(unplanned)}\n{text}"
+    if task.off_plan is not None and (off_plan := task.off_plan(stage)):
+        findings, text = [*off_plan, *findings], f"{format_new(off_plan)}\n{text}"
     return without(VerifierVerdict(text, tuple(findings)), run.withdrawn)
 
 

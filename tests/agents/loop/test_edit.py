@@ -277,7 +277,7 @@ def test_what_is_compared_is_rendered_at_one_size_and_frame(taller: Played) -> N
 def dropped(play: Callable[..., Played], kitchen: Path) -> Played:
     """A mug that is to fall: keyed and not tagged, keyed though tagged, then simulated."""
     actor = {"name": "Mug", "deformation_kind": "sim_rigid", "motion_kind": "bake"}
-    turns = (run(KEYED), DONE, run(TAGGED), DONE, run(SIMULATED), DONE)
+    turns = (run(KEYED), call("blender_verify"), DONE, run(TAGGED), DONE, run(SIMULATED), DONE)
     team = Team(plan=plan(task("motion", "Mug", "Table"), actors=[actor]), coder={"motion": turns})
     return play(team, mode="edit", prompt="Let the mug fall onto the table", file=kitchen)
 
@@ -294,6 +294,12 @@ def test_an_actor_that_says_not_by_what_it_moves_cannot_advance(dropped: Played)
     first = dropped.of("decided", stage="motion")[0]
     assert first["taken"] == "retry"
     assert first["why"].startswith("The verifier has ")
+
+
+def test_the_coder_is_told_of_it_when_it_verifies_and_not_only_at_the_end(dropped: Played) -> None:
+    last = [one for one in dropped.requests if whose(one) == ("coder", "motion")][2]
+    (answered,) = last["messages"][-1]["content"]
+    assert "there is no collection of that name" in str(answered["content"])
 
 
 def test_what_is_asked_beside_the_review_is_numbered_apart_from_what_the_review_is_shown(
