@@ -12,6 +12,7 @@ from kb_serve.recognise.messages.nameless.animation import ANIMATION
 from kb_serve.recognise.messages.nameless.custom_properties import CUSTOM_PROPERTIES
 from kb_serve.recognise.messages.nameless.files import FILES
 from kb_serve.recognise.messages.nameless.meshes import MESHES
+from kb_serve.recognise.messages.nameless.message import bare_part, bare_query
 from kb_serve.recognise.messages.nameless.modes import MODES
 from kb_serve.recognise.messages.nameless.modifiers import MODIFIERS
 from kb_serve.recognise.messages.nameless.nodes import NODES
@@ -40,6 +41,10 @@ NAMELESS_MESSAGES = (
     *REGISTRATION,
     *FILES,
     *MODES,
+)
+# What nearly always decides, with and without quotes, of each.
+_FIRST_PARTS = tuple(
+    (message.parts[0], bare_part(message.parts[0]), message) for message in NAMELESS_MESSAGES
 )
 _ANYWHERE = (
     (
@@ -70,8 +75,10 @@ class NamelessMessages:
 
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds what such a message is about, with what helps."""
-        for message in NAMELESS_MESSAGES:
-            if message.is_in(query) and self._is_told(message):
+        bare = bare_query(query)
+        for part, own, message in _FIRST_PARTS:
+            is_begun = part in query or (own and own in bare)
+            if is_begun and message.is_in(query) and self._is_told(message):
                 for rank, path in enumerate(message.paths):
                     if "/" not in path or self._reader.manual.is_page(path):
                         recognition.add(path, _SURE - 0.03 * rank, "error message")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 
 _QUOTES = str.maketrans("", "", "'\"")
 _NAME_FIRST = re.compile(r"(['\"])\w+\1 ")
@@ -26,21 +26,21 @@ class NamelessMessage:
 
     def is_in(self, query: str) -> bool:
         """Whether a query holds the message, be it typed without the quotes of a name."""
-        unquoted = f" {_of_query(query)}"
+        bare = bare_query(query)
 
         def has(part: str) -> bool:
-            return part in query or bool((bare := _of_part(part)) and bare in unquoted)
+            return part in query or bool((own := bare_part(part)) and own in bare)
 
         return all(map(has, self.parts)) and not any(map(has, self.without))
 
 
-@lru_cache(maxsize=8)  # asked for each message
-def _of_query(query: str) -> str:
-    return query.translate(_QUOTES)
+def bare_query(query: str) -> str:
+    """A query without quotes, with a space before its first word."""
+    return f" {query.translate(_QUOTES)}"
 
 
-@lru_cache(maxsize=1024)
-def _of_part(part: str) -> str:
+@cache
+def bare_part(part: str) -> str:
     """A part without the quotes of the name that it begins with, where a word begins; empty for others, which quotes
     tell from other messages.
     """
