@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 MOST_STEPS = 4_000_000  # expressions that are read, some more than once
 _STEPS_PER_CHARACTER = 4
 _ROUNDS = 3  # in which a function is read for what its module and its class bind
+_MOST_FOLLOWED = 4  # times
 _MOST_ROUNDS = 6  # in which it is read for what calls pass
 _DEEPEST_IMPORT = 20  # files that import each other are read within each other
 
@@ -86,20 +87,25 @@ class Analyzer(Statements, Functions, Calls):
         ]
         followed: set[tuple[int, Given]] = set()
         found: set[tuple[ast.AST, str]] = set()
-        for file, reader in waiting:  # it grows
-            for place, row in reader.carried.items():
-                known = file.resolutions.get(row.node)
-                is_known = known is not None and known.missing and known.value == row.value and known.sure
-                if not is_known and place not in found:
-                    found.add(place)
-                    file.carried_rows.append(row)
-            for number, received, call in reader.uses:
-                if (number, received) in followed or call in hidden[id(file)]:
-                    continue
-                followed.add((number, received))
-                reading = self.reading_for(number, received)
-                if reading is not None and self.is_current(reading):
-                    waiting.append((reading.file or file, reading))
+        # What a call leaves in a thing of the script changes what others found there: then they are read again.
+        for _ in range(_MOST_FOLLOWED):
+            late: list[tuple[SourceFile, Reader]] = []
+            for file, reader in waiting:  # it grows
+                _add_carried(file, reader, found)
+                is_late = False
+                for number, received, call in reader.uses:
+                    if (number, received) in followed or call in hidden[id(file)]:
+                        continue
+                    reading = self.reading_for(number, received)
+                    if reading is not None and not self.is_current(reading):
+                        is_late = True
+                        continue
+                    followed.add((number, received))
+                    if reading is not None:
+                        waiting.append((reading.file or file, reading))
+                if is_late:
+                    late.append((file, reader))
+            waiting = late
 
     def _readers(self) -> Iterator[tuple[SourceFile, Reader]]:
         yield from ((file, file) for file in self.sources)
@@ -166,6 +172,16 @@ class Analyzer(Statements, Functions, Calls):
         if getattr(function.node, "name", "").startswith("register"):
             return 0
         return 1 if function.cls is not None else 2
+
+
+def _add_carried(file: SourceFile, reader: Reader, found: set[tuple[ast.AST, str]]) -> None:
+    """Adds to a file what texts from elsewhere come to in what was read, each once; ``found`` are those that it has."""
+    for place, row in reader.carried.items():
+        known = file.resolutions.get(row.node)
+        is_known = known is not None and known.missing and known.value == row.value and known.sure
+        if not is_known and place not in found:
+            found.add(place)
+            file.carried_rows.append(row)
 
 
 def analyse(code: str, api: Api, version: tuple[int, ...] = ()) -> Analysis:

@@ -95,6 +95,10 @@ class KnownNames:
         """
         return self._member(owner, name) is not None
 
+    def had_value(self, path: str, value: str) -> bool:
+        """Whether a property has a value in another Blender that it lacks in this one."""
+        return self._lookup.of_path(f"{path}:{value}") is not None
+
     def successor(self, owner: str, name: str) -> str:
         """The path that surely takes the place of such a member with no other change; empty for none."""
         removed = self._member(owner, name)

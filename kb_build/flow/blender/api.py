@@ -104,6 +104,10 @@ class FormerNames(Protocol):
         """Whether a class or module of another Blender has a member that it lacks in this one."""
         ...
 
+    def had_value(self, path: str, value: str) -> bool:
+        """Whether a property of another Blender has a value that it lacks in this one."""
+        ...
+
     def still_works(self, path: str) -> str:
         """The symbol that one gets by a former name that this Blender still takes; empty where it does not."""
         ...
@@ -256,6 +260,10 @@ class Api:
     def had(self, cls: str, name: str) -> bool:
         """Whether a class had, or gets, a member in another Blender that it lacks in this one; "" has modules."""
         return self._former is not None and self._former.had(cls, name)
+
+    def had_value(self, path: str, value: str) -> bool:
+        """Whether a property had, or gets, a value in another Blender that it lacks in this one."""
+        return self._former is not None and self._former.had_value(path, value)
 
     def successor_type(self, owner: str, name: str) -> Type:
         """The type of what took the place of a member that a class or module lacks; UNKNOWN if that is not sure."""

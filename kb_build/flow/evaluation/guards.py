@@ -53,7 +53,7 @@ class Guards(Expressions):
 
     def _of_another(self, test: ast.expr, *, holds: bool) -> Doubts:
         """Everything, where a condition finds a member that a class has in another Blender only, or lacks one that it
-        has in this one.
+        has in this one; or a value that a property has in another Blender only.
         """
         match test:
             case ast.UnaryOp(op=ast.Not(), operand=operand):
@@ -70,8 +70,32 @@ class Guards(Expressions):
                 return self._of_another_with(
                     owner, name, has=isinstance(operator, ast.In) is holds, listed=True
                 )
+            case ast.Compare(left=left, ops=[operator], comparators=[right]):
+                is_former = self._has_former_value(left, operator, right, holds=holds)
+                return EVERYTHING if is_former else NO_DOUBTS
             case _:
                 return NO_DOUBTS
+
+    def _has_former_value(self, left: ast.expr, operator: ast.cmpop, right: ast.expr, *, holds: bool) -> bool:
+        """Whether a comparison finds a property to have one of some values that it has in another Blender only."""
+        match operator, right:
+            case ((ast.Eq() | ast.NotEq()), _):
+                return isinstance(operator, ast.Eq) is holds and any(map(self._is_former, (left, right)))
+            case (
+                (ast.In() | ast.NotIn()),
+                ast.Tuple(elts=items) | ast.List(elts=items) | ast.Set(elts=items),
+            ):
+                return (
+                    isinstance(operator, ast.In) is holds and bool(items) and all(map(self._is_former, items))
+                )
+            case _:
+                return False
+
+    def _is_former(self, compared: ast.expr) -> bool:
+        row = self.here.resolutions.get(compared)
+        if row is None or row.kind != "compared" or not row.missing:
+            return False
+        return all(self.api.had_value(path, row.value) for path in row.missing)
 
     def _of_another_with(self, owner: ast.expr, name: str, *, has: bool, listed: bool = False) -> Doubts:
         """Everything, where something has a name, or lacks it, in another Blender and not in this one.

@@ -56,7 +56,7 @@ class Functions(Parameters, Trials):
         function.running, function.stale = True, False
         function.seen = self.stamp(function)
         function.readings = {}
-        function.uses = set()
+        function.uses = {}
         function.carried = {}
         place = self._place_of(function)
         try:
@@ -102,7 +102,7 @@ class Functions(Parameters, Trials):
             return self.returned(number) or UNKNOWN
         received = _as_one_call(function, whole)
         if follows:
-            self.reader.uses.add((number, received, node))
+            self.reader.uses[number, received, node] = None
         is_read_again = function.stale and self.rounds and not (self.settled or self.here.tries)
         if not is_read_again and (
             function.stale
@@ -196,7 +196,7 @@ class Functions(Parameters, Trials):
             unknown={name for name, kind in received if kind is UNKNOWN},
             returned=None,
             readings={},
-            uses=set(),
+            uses={},
             carried={},
             calls={},
             exact=True,

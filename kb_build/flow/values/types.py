@@ -224,8 +224,8 @@ Given = tuple[tuple[str, Type], ...]
 # What was known of other definitions when they were read: (class, attribute), or of a function what it returns: "" to
 # any call, or what one call passes.
 Readings = dict[tuple[int, str | Given], Type | None]
-# (function, what is passed, where) of the calls that surely happen where what they are in is run.
-Uses = set[tuple[int, Given, "ast.Call"]]
+# (function, what is passed, where) of the calls that surely happen where what they are in is run, in their order.
+Uses = dict[tuple[int, Given, "ast.Call"], None]
 # (where, text) → what a text that comes from elsewhere is found to be there.
 Carried = dict[tuple["ast.AST", str], "Resolution"]
 

@@ -59,6 +59,16 @@ READY = {
         else:
             modifier.solver = 'FLOAT'
     """,
+    "a value where it is the present one": """
+        if scene.render.engine == 'BLENDER_EEVEE':
+            scene.render.engine = 'BLENDER_EEVEE'
+        elif scene.render.engine == 'BLENDER_EEVEE_NEXT':
+            scene.render.engine = 'BLENDER_EEVEE_NEXT'
+    """,
+    "a value where it is one of some": """
+        if scene.render.engine in {'BLENDER_EEVEE_NEXT'} and scene:
+            scene.render.engine = 'BLENDER_EEVEE_NEXT'
+    """,
     "an operator whose class is asked for": """
         if hasattr(bpy.types, "WM_OT_stl_export"):
             export = bpy.ops.wm.stl_export

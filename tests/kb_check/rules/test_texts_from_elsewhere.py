@@ -220,7 +220,26 @@ REFUSED = {
         "engine = 'BLENDER_EEVEE_NEXT' if bpy.app.version >= (4, 2) else 'BLENDER_EEVEE'\nuse(engine)",
         [ENGINE],
     ),
+    "what every call adds to the same list": (
+        """
+        class Keeper:
+            def __init__(self):
+                self.old = []
+            def put(self, what, name, value):
+                self.old.append([(what, name), getattr(what, name)])
+                setattr(what, name, value)
+        class Quick(Keeper):
+            def __init__(self):
+                Keeper.__init__(self)
+                self.put(scene.render, "film_transparent", True)
+                self.put(scene.eevee, "use_bloom", False)
+                self.put(scene.render, "use_motion_blur", False)
+        Quick()
+        """,
+        ["bpy.types.SceneEEVEE.use_bloom"] * 2,
+    ),
 }
+
 TAKEN = {
     "a name that is asked for": """
         engine = 'BLENDER_EEVEE_NEXT'
