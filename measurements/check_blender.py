@@ -3,8 +3,8 @@
 ``python -m measurements --only check_blender`` checks every script that the base's Blender brings, and those of each
 other version from 4.2 on whose base lies beside it. A finding is true if ``broken_in_blender.toml`` has a row for it
 and Blender, when it runs the row's code, says what the row says; a comparison that never holds also if
-Blender's own enumeration lacks the value. Every other error is counted as false. Warnings of
-other rules, and notes, are counted alone.
+Blender's own enumeration lacks the value, and a name that nothing binds if the module that Blender loads lacks it.
+Every other error is counted as false. Warnings of other rules, and notes, are counted alone.
 
 This project's own scripts that run inside Blender, in the folders called ``inside``, are checked too. They run in every
 version, which the tests prove: whatever is found there is false.
@@ -14,13 +14,14 @@ from __future__ import annotations
 
 import gc
 import json
+import re
 import subprocess
 import sys
 import time
 import tomllib
 from collections import Counter, defaultdict
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
@@ -60,6 +61,8 @@ _PARTS = (
     "bench",
 )  # of the project that have packages in Blender
 _MARK = "ANSWERS:"
+_UNBOUND = re.compile(r"called `(\w+)`: NameError")
+_ON_PATH = ("modules", "startup", "addons_core", "addons")  # folders of scripts that Python imports from
 _SECONDS = 120
 # Runs in Blender: each text of code, from the state that Blender starts in, and what it ends in.
 _RUN = """
@@ -163,6 +166,9 @@ def ask_blender(executable: str, codes: Iterable[str]) -> dict[str, str]:
 
 def proof_of(path: str, finding: Finding, rows: list[Broken]) -> tuple[str, str]:
     """The code that proves a finding, and what it must say; empty for none."""
+    if unbound := _UNBOUND.search(finding.message):
+        code = f"eval({unbound[1]!r}, {_names_in(path)})"
+        return code, f"NameError: name {unbound[1]!r} is not defined"
     for row in rows:
         if finding.symbol == row.symbol and path in row.scripts:
             return row.code, row.says
@@ -172,6 +178,16 @@ def proof_of(path: str, finding: Finding, rows: list[Broken]) -> tuple[str, str]
         code = f"{cls}.bl_rna.properties[{name!r}].enum_items[{value!r}]"
         return code, f"KeyError: 'bpy_prop_collection[key]: key \"{value}\" not found'"
     return "", ""
+
+
+def _names_in(path: str) -> str:
+    """Code that gives the names of a script's module, once it was loaded."""
+    parts = PurePosixPath(path.removesuffix("/__init__.py")).with_suffix("").parts
+    roots = [place for place, part in enumerate(parts) if part in _ON_PATH]
+    if roots:
+        return f"vars(__import__('importlib').import_module({'.'.join(parts[roots[-1] + 1 :])!r}))"
+    file = f"bpy.utils.system_resource('SCRIPTS') + {f'/{path}'!r}"
+    return f"__import__('runpy').run_path({file})"
 
 
 def measure(setting: Setting) -> ReportPart:

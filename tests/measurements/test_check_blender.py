@@ -59,6 +59,19 @@ def test_a_finding_is_proven_by_what_blender_says(base: Path, tmp_path: Path) ->
     assert answers == dict(wanted.values())
 
 
+def test_a_name_that_nothing_binds_is_proven_by_its_module(base: Path, tmp_path: Path) -> None:
+    if installed_bpy() is None:
+        pytest.skip("there is no Blender in this environment")
+    path = tmp_path / "modules" / "bpy_extras" / "anim_utils.py"
+    path.parent.mkdir(parents=True)
+    path.write_text("import bpy\nprint(nobody_binds_me)\n", encoding="utf-8")
+    with Checker(base) as checker:
+        ((name, (finding,), _),) = check_all(checker, tmp_path)
+    code, says = proof_of(name, finding, broken_rows())
+    bound = code.replace("nobody_binds_me", "bake_action")
+    assert ask_blender(sys.executable, [code, bound]) == {code: says, bound: ""}
+
+
 def test_a_blender_that_cannot_be_run_says_nothing(tmp_path: Path) -> None:
     assert ask_blender(str(tmp_path / "python"), ["1"]) == {}
 
