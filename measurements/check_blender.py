@@ -21,11 +21,12 @@ import time
 import tomllib
 from collections import Counter, defaultdict
 from dataclasses import dataclass
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
 from kb_build.base_file import read_meta
+from kb_build.flow.state.source_files import module_name
 from kb_build.usage.scripts import read_script
 from kb_check.checker import Checker
 from measurements.blender_scripts import scripts_folder
@@ -182,7 +183,7 @@ def proof_of(path: str, finding: Finding, rows: list[Broken]) -> tuple[str, str]
 
 def _names_in(path: str) -> str:
     """Code that gives the names of a script's module, once it was loaded."""
-    parts = PurePosixPath(path.removesuffix("/__init__.py")).with_suffix("").parts
+    parts = module_name(path)[0].split(".")
     roots = [place for place, part in enumerate(parts) if part in _ON_PATH]
     if roots:
         return f"vars(__import__('importlib').import_module({'.'.join(parts[roots[-1] + 1 :])!r}))"

@@ -16,7 +16,7 @@ from kb_serve.answer.ways.made_things import made_with
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
 
-    from kb_serve.answer.facts.asked_values import AskedOf
+    from kb_serve.answer.facts.asked_values import AskedOf, AskedValue
     from kb_serve.answer.hit_blocks import HitBlocks
     from kb_serve.answer.hit_lines import HitLines
     from kb_serve.answer.hits import Hit
@@ -52,12 +52,10 @@ class HitAnswers:
         asked = asked_words(text)
         given = [*self._renderer.arguments(hits[0].id, arguments)]
         found = self._lines.asked(hits[0], asked) if is_plain(text) and not given else ()
-        names = {value.argument for value in found if value.argument}
-        told = [*self._renderer.arguments(hits[0].id, names, unless_all_fit=True)]
+        told, names = self._asked_arguments(hits[0], found)
         yield from given
         yield from self._renderer.sockets(hits[0].id, text)
-        names = arguments if given else names if told else ()
-        whole = self._blocks.whole(hits[0], rows[0], asked_of((), names))
+        whole = self._blocks.whole(hits[0], rows[0], asked_of((), arguments if given else names))
         yield from islice(whole, 1)
         yield from told
         yield from self._animated(asked, hits, members)
@@ -75,13 +73,10 @@ class HitAnswers:
         they follow its heading.
         """
         found = self._lines.asked(hits[0], asked)
-        names = {value.argument for value in found if value.argument}
-        told = [*self._renderer.arguments(hits[0].id, names, unless_all_fit=True)]
+        told, names = self._asked_arguments(hits[0], found)
         own = f"{hits[0].id}."
         near = tuple(name for name in rows[0].members if own + name not in members)
-        excerpt = self._blocks.excerpt(
-            hits[0], rows[0]._replace(members=near), asked_of(found, names if told else ())
-        )
+        excerpt = self._blocks.excerpt(hits[0], rows[0]._replace(members=near), asked_of(found, names))
         others = [*self._others(hits, rows, members, asked)]
         yield next(excerpt)
         yield from self._animated(asked, hits, members)
@@ -112,6 +107,14 @@ class HitAnswers:
         yield from self._lines.asked_members(hits[0], [path for path in members if path not in told])
         yield from more
         yield from self._others(hits, rows, members, asked, told=sides)
+
+    def _asked_arguments(
+        self, hit: Hit, found: Sequence[AskedValue]
+    ) -> tuple[list[AnswerBlock], Collection[str]]:
+        """The arguments of which a question has ``found`` values or words, and their names, unless all of them fit."""
+        names = {value.argument for value in found if value.argument}
+        told = [*self._renderer.arguments(hit.id, names, unless_all_fit=True)]
+        return told, names if told else ()
 
     def _others(
         self,

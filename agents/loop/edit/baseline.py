@@ -49,10 +49,15 @@ def new_findings(known: Iterable[Finding], findings: Sequence[Finding]) -> list[
     return [found[place] for place in sorted(found)]
 
 
-def told_since(known: Sequence[Finding], outcome: ToolOutcome) -> tuple[list[Finding], str]:
-    """The findings of a call of the verifier that were not ``known``, and what models are told of it."""
+def told_since(
+    known: Sequence[Finding], outcome: ToolOutcome, off_plan: Sequence[Finding] = ()
+) -> tuple[list[Finding], str]:
+    """The findings of a call of the verifier that were not ``known``, behind those that the plan of an edit adds, and
+    what models are told of both.
+    """
     findings = new_findings(known, read_findings(outcome.data))
-    return findings, format_new(findings) if known else outcome.text
+    text = format_new(findings) if known else outcome.text
+    return ([*off_plan, *findings], f"{format_new(off_plan)}\n{text}") if off_plan else (findings, text)
 
 
 def format_known(findings: Iterable[Finding]) -> list[str]:

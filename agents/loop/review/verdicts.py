@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from agents.loop.edit.baseline import format_new, told_since
+from agents.loop.edit.baseline import told_since
 from agents.loop.record.events import Reviewed, Verified
 from agents.loop.review.evidence import evidence
 from agents.loop.review.withdrawals import as_soft
@@ -53,9 +53,8 @@ def verify(run: Run, stage: Stage, task: RunTask) -> VerifierVerdict:
     outcome = run.tools.use(VERIFIER, stage, VERIFY, {}, task.verification(stage))
     if outcome.failed or "findings" not in outcome.data:
         return _undecided(outcome.text, task)
-    findings, text = told_since(task.known, outcome)
-    if task.off_plan is not None and (off_plan := task.off_plan(stage)):
-        findings, text = [*off_plan, *findings], f"{format_new(off_plan)}\n{text}"
+    off_plan = task.off_plan(stage) if task.off_plan else ()
+    findings, text = told_since(task.known, outcome, off_plan)
     return without(VerifierVerdict(text, tuple(findings)), run.withdrawn)
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from agents.blender.files.saved_files import move_saved
 from agents.blender.tools.scene_order import words_of
-from agents.loop.edit.baseline import format_new, told_since
+from agents.loop.edit.baseline import told_since
 from agents.loop.errors import NotSaved, RunError
 from agents.loop.film.planned_settings import code_of
 from agents.loop.film.telling_frames import MeasuredMotion
@@ -234,11 +234,9 @@ class RoleTools:
         if self._role == coder.NAME and call.name == RENDER and not outcome.failed:
             self._run.keep_stills(outcome)
         if task is not None and "findings" in outcome.data:
-            findings, text = told_since(task.known, outcome)
             # The stage is held to these too: whoever builds it is to know before it ends.
-            off_plan = task.off_plan(self._stage) if task.off_plan and "rules" not in call.input else []
-            if off_plan:
-                findings, text = [*off_plan, *findings], f"{format_new(off_plan)}\n{text}"
+            off_plan = task.off_plan(self._stage) if task.off_plan and "rules" not in call.input else ()
+            findings, text = told_since(task.known, outcome, off_plan)
             _, withdrawn = as_soft(findings, self._run.withdrawn)
             if withdrawn:
                 text = f"{withdrawn}\n{text}"

@@ -189,9 +189,13 @@ def find_caches(scene):
     if world is not None and world.point_cache is not None:
         caches.append(PhysicsCache(RIGID_BODY, scene, world))
     for obj in scene.objects:
-        for modifier in obj.modifiers:
-            caches += _of_modifier(obj, modifier)
+        caches += caches_of(obj)
     return caches
+
+
+def caches_of(obj):
+    """The caches of an object."""
+    return [cache for modifier in obj.modifiers for cache in _of_modifier(obj, modifier)]
 
 
 def file_prefix(points, owner):

@@ -7,7 +7,7 @@ import re
 import bpy
 
 from ..physics import rigid_body_inputs
-from ..physics.caches import bytes_in_memory, file_prefix, find_caches
+from ..physics.caches import bytes_in_memory, caches_of, file_prefix
 from .rna_values import text
 
 MOST_FILES = 50_000  # of one cache folder that are read
@@ -31,7 +31,9 @@ def point_cache_facts(cache, owner):
     held = _FRAMES.search(cache.info)
     facts["frames"] = int(held[1].replace(",", "")) if held else 0
     of_bodies = cache.is_baked and isinstance(owner, bpy.types.Scene)
-    outdated = rigid_body_inputs.is_outdated(owner) if of_bodies else cache.is_outdated or _is_stale(cache)
+    outdated = (
+        rigid_body_inputs.is_outdated(owner) if of_bodies else cache.is_outdated or _is_stale(cache, owner)
+    )
     # An empty cache cannot be outdated, whatever Blender says.
     if outdated and (facts["frames"] or cache.is_baked):
         facts["outdated"] = True
@@ -45,11 +47,9 @@ def point_cache_facts(cache, owner):
     return facts
 
 
-def _is_stale(points):
-    """Whether something that Blender does not watch has changed since a bake was made."""
-    return points.is_baked and any(
-        cache.points == points and cache.outdated for cache in find_caches(bpy.context.scene)
-    )
+def _is_stale(points, obj):
+    """Whether something that Blender does not watch has changed since a bake of an object was made."""
+    return points.is_baked and any(cache.points == points and cache.outdated for cache in caches_of(obj))
 
 
 def _files_of(owner, cache):
