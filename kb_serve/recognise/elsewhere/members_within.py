@@ -152,8 +152,12 @@ def _beside(owner: str, name: str, reader: BaseReader) -> Within | None:
     cls = owner.removeprefix(TYPES)
     holding = [one for one in reader.pointing_at(cls) if one.is_read_only and not reader.descends(owner, ID)]
     is_alone = len({one.owner for one in holding}) == 1
-    for one in holding:
-        if (key(one.name) == key(cls) or is_alone) and (member := _own_of(one.owner, name, reader)):
+    # Beside a data-block: a soft body's cache is its modifier's, though the object has the settings too.
+    parts = [one for one in holding if not reader.descends(one.owner, ID)]
+    is_only_part = len({one.owner for one in parts}) == 1
+    named = [one for one in holding if is_alone or key(one.name) == key(cls)]
+    for one in dict.fromkeys((*named, *(parts if is_only_part else ()))):
+        if member := _own_of(one.owner, name, reader):
             holder = one.owner.removeprefix(TYPES)
             return Within(member, f"`{holder}` has it (`{member.path}`): this is its `.{one.name}`.")
     # What a whole data-block has beside it is another thing, as an object's force field is for its rigid body; and so

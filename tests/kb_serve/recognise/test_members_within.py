@@ -25,6 +25,7 @@ FOUND = {
     ("Text", "body"): (".lines[0].body", "TextLine.body"),
     ("Key", "value"): (".key_blocks[0].value", "ShapeKey.value"),
     ("ClothSettings", "distance_min"): (".collision_settings", "ClothCollisionSettings.distance_min"),
+    ("SoftBodySettings", "point_cache"): ("this is its `.settings`", "SoftBodyModifier.point_cache"),
     ("RenderSettings", "frame_start"): ("this is its `.render`", "Scene.frame_start"),
     ("RigidBodyWorld", "gravity"): ("this is its `.rigidbody_world`", "Scene.gravity"),
 }
