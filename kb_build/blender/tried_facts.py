@@ -202,6 +202,12 @@ def _add_limits(row: _Row, seen: Mapping[str, Any]) -> None:
             _append_sentence(item, "Assigned, it changes nothing")
 
 
+def _add_texts(row: _Row, asked: Mapping[str, Any]) -> None:
+    """Adds the texts that an argument takes: what the documentation says of it is added later."""
+    items = [{"identifier": item} for item in asked["items"]]
+    row.setdefault("parameters", []).append({"name": asked["argument"], "enum_items": items})
+
+
 def _flag(row: _Row, flags: Iterable[str]) -> None:
     row["flags"] = [*row.get("flags", ()), *flags]
 
@@ -264,6 +270,7 @@ _ADDED: dict[str, Callable[[_Row, Mapping[str, Any]], None]] = {
     "refusals": _add_refusals,
     "refused_default": _add_refused_default,
     "source_items": _add_source_items,
+    "texts_taken": _add_texts,
 }
 # Kind of record → the flags that it is worth.
 _FLAGS: dict[str, Callable[[Mapping[str, Any]], Iterable[str]]] = {

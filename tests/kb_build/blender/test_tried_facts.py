@@ -430,3 +430,24 @@ def test_every_call_of_a_function_written_in_python_can_be_read(symbols: Mapping
     calls = {path: symbol.signature for path, symbol in symbols.items() if "(" in symbol.signature}
     assert len(calls) > 5_000
     assert not {path: call for path, call in calls.items() if "<" in call.partition("(")[2]}
+
+
+@pytest.mark.parametrize(
+    ("function", "argument", "taken"),
+    [
+        ("SpaceNodeEditor.draw_handler_add", "draw_type", "BACKDROP"),
+        ("SpaceView3D.draw_handler_add", "region_type", "WINDOW"),
+        ("WindowManager.draw_cursor_add", "space_type", "VIEW_3D"),
+        ("BlendData.user_map", "value_types", "MESH"),
+        ("BlendDataLibraries.write", "path_remap", "RELATIVE_ALL"),
+    ],
+)
+def test_an_argument_has_the_texts_that_its_function_lists_where_it_refuses_another(
+    symbols: Mapping[str, Symbol], function: str, argument: str, taken: str
+) -> None:
+    parameter = next(one for one in symbols[f"bpy.types.{function}"].parameters if one.name == argument)
+    items = [item.identifier for item in parameter.enum_items]
+    assert taken in items
+    assert "?" not in items
+    assert len(items) == len(set(items))
+    assert parameter.description
