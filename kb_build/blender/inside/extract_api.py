@@ -22,7 +22,7 @@ from .classes import context, given_nothing, own_classes, rna, source_items
 from .instances import context_modes, new_things, own_names, pointer_fillers, startup
 from .instances.neighbours import Neighbours
 from .instances.observer import Observer
-from .outside_rna import crashing_calls, modules, returning_none, texts_taken, windowless
+from .outside_rna import crashing_calls, handed_on, modules, returning_none, texts_taken, windowless
 from .preconditions import operator_needs, reached_modes, undo_steps
 from .tried import accepted, crashes, evaluated, idle, limits, refusals
 from .wire import Writer
@@ -126,6 +126,7 @@ STEPS = (
     ("modules", lambda write, _found: modules.write_all(write)),
     ("returning none", lambda write, _found: returning_none.find_all(write)),
     ("texts taken", lambda write, found: texts_taken.find_all(write, found["structs"])),
+    ("handed on", lambda write, found: handed_on.find_all(write, found["structs"])),
     ("own classes", lambda write, found: own_classes.find_all(write, found["structs"])),
     ("enums", write_enum_sets),
     ("links", write_manual_links),

@@ -55,3 +55,21 @@ def test_former_icons_are_found(
 def test_what_is_no_former_icon_may_be_anothers(rule_checker: Checker) -> None:
     code = _MIXED + "        layout.label(icon='OWN_ICON')\n        context.other(icon='HAIR')\n"
     assert rule_checker.check(code, rules=["unknown-value"]) == []
+
+
+def test_a_menu_of_a_message_takes_the_icons_that_it_is_drawn_with(rule_checker: Checker) -> None:
+    code = _BOX + "box('Saved')\nbox('Lost', icon='ERROR')\nbox('Lost', icon='WARNING')\n"
+    found = rule_checker.check(code, rules=["unknown-value"])
+    assert [code.splitlines()[one.span.line - 1] for one in found] == [_BOX.splitlines()[-1]]
+    assert "'WARNING' is not a value" in found[0].message
+
+
+_BOX = """\
+import bpy
+
+
+def box(text, icon='INFO'):
+    def draw(self, context):
+        self.layout.label(text=text)
+    bpy.context.window_manager.popup_menu(draw, title="Own", icon=icon)
+"""
