@@ -27,9 +27,8 @@ def functions(structs):
 
 def handed(function):
     """(argument, method of the same thing, parameter of that) of what a function hands on under a name."""
-    (body,) = ast.parse(textwrap.dedent(inspect.getsource(function))).body
-    own, *arguments = [one.arg for one in (*body.args.posonlyargs, *body.args.args, *body.args.kwonlyargs)]
-    for node in ast.walk(body):
+    own, *arguments = inspect.signature(function).parameters
+    for node in ast.walk(ast.parse(textwrap.dedent(inspect.getsource(function)))):
         match node:
             case ast.Call(func=ast.Attribute(value=ast.Name(id=thing), attr=method)) if thing == own:
                 for keyword in node.keywords:
