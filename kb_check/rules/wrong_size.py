@@ -26,7 +26,7 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.flow.values.types import Tuple
+from kb_build.flow.values.types import UNKNOWN, Tuple, members
 from kb_check.calls.resolved import callee_path
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
@@ -213,17 +213,18 @@ def _unpacked(script: Script, value: ast.expr, names: list[ast.expr]) -> Finding
     if length is None or len(names) == length or any(isinstance(name, ast.Starred) for name in names):
         return None
     size = size_of(script, value)
-    if (
-        isinstance(script.type_of(value), Tuple)
-        and isinstance(value, ast.Call)
-        and callee_path(script, value)
-    ):
+    kinds = members(script.type_of(value) or UNKNOWN)
+    if any(isinstance(kind, Tuple) for kind in kinds) and _is_of_blender(script, value):
         return None  # wrong-count names what the call gives
     told = in_words(size).capitalize() if size else f"A row of {length}"
     told += f" cannot be unpacked into {len(names)} names"
     if any(annotated(script, value, name) for name in _ROWS):
         return replace(_finding(script, value, f"{told}: {ONE_IS_WRONG}."), severity="warning")
     return _finding(script, value, f"{told}.")
+
+
+def _is_of_blender(script: Script, value: ast.expr) -> bool:
+    return isinstance(value, ast.Call) and bool(callee_path(script, value))
 
 
 def _part_set(script: Script, part: ast.Subscript | ast.Attribute, value: ast.expr) -> Finding | None:

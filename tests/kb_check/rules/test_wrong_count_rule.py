@@ -67,6 +67,11 @@ def test_what_cannot_be_unpacked_is_reported_and_nothing_else(check: Check, tmp_
     assert {finding.span.line for finding in check("wrong-count", _CODE)} == refused
 
 
+def test_it_is_told_once(check: Check) -> None:
+    told = {finding.span.line for finding in check("wrong-count", _CODE)}
+    assert told.isdisjoint(finding.span.line for finding in check("wrong-size", _CODE))
+
+
 def test_what_is_there_is_named(check: Check) -> None:
     (found,) = check(
         "wrong-count", "import bpy\nhit, place, normal = bpy.context.object.ray_cast((0, 0, 9), (0, 0, -1))\n"
