@@ -198,7 +198,8 @@ class _Declaration:
         elif isinstance(node, ast.Name) and node.id in plain_classes(self._script):
             what = f"`{node.id}`, which derives from none"
         elif isinstance(kind, ClassObject) and not any(api.descends(kind.cls, base) for base in bases):
-            what = f"`{kind.cls}`"
+            row = self._script.analysis.resolutions.get(node)
+            what = f"`{kind.cls}`" if row is None or not row.missing else ""  # another rule tells of that
         if what:
             takes = "a class of data-blocks or a PropertyGroup" if is_pointer else "a PropertyGroup"
             yield self._finding(node, "type", f"takes {takes}, not {what}")

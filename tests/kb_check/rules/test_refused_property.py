@@ -204,3 +204,9 @@ def test_what_is_computed_is_left_alone(check: Check, call: str) -> None:
     start = "import bpy\nfrom other import other, choices, options, one, two, more\n"
     code = f"{start}class Group(bpy.types.PropertyGroup):\n    pass\nx = bpy.props.{call}\n"
     assert not check("refused-property", code)
+
+
+def test_a_class_that_went_is_told_of_by_its_own_rule(check: Check) -> None:
+    code = "import bpy\nx = bpy.props.CollectionProperty(type=bpy.types.AssetHandle)\n"
+    assert not check("refused-property", code)
+    assert len(check("unknown-name", code)) == 1
