@@ -99,7 +99,7 @@ def forget():
 
 
 class ChangeWatch:
-    """Remembers the file before some code runs; ``report`` returns the differences after it.
+    """Remembers the file before some code runs; ``differences`` says what is another after it.
 
     The settings of at most ``most`` data-blocks are compared; of more, those that Blender evaluated anew have changed.
     ``follows``: nothing but watched code runs in this Blender, unless ``forget`` was called. What that code left is
@@ -128,15 +128,15 @@ class ChangeWatch:
         if layer is not None:
             layer.update()
 
-    def report(self):
-        """{kind: {"added" | "removed" | "changed": names}}, long series of them as one; {} if nothing is.
+    def differences(self):
+        """{kind: {"added" | "removed" | "changed": all names}}; {} if nothing is another. To be asked once.
 
         Modifiers are by ``Object[Modifier]``; ``caches`` has those that were ``reset``: they simulate again from their
         first frame; those that are ``no longer baked``; and the baked ones that are ``older than their settings``: they
         are played as they were baked. What changed of a data-block is in brackets: ``Cube (transform)``.
         """
         self._settle()
-        report = {}
+        found = {}
         with _silenced(but_threads=True):
             digests, lasting = _digests(self._most) if self._digests is not None else (None, {})
         for kind, new in _names_by_kind().items():
@@ -148,24 +148,24 @@ class ChangeWatch:
                 changed = {key: new[key] + what for key in both if (what := self._changes(key, digests))}
                 changed.update({key: f"{old[key]} → {new[key]}" for key in both if old[key] != new[key]})
             if entry := _entry(old, new, changed):
-                report[kind] = entry
+                found[kind] = entry
         old, new = self._modifiers, _modifiers()
         renamed = [key for key in new if key in old and new[key][1] != old[key][1]]
         old, new = ({key: f"{owner}[{name}]" for key, (owner, name) in names.items()} for names in (old, new))
         if entry := _entry(old, new, {key: new[key] for key in renamed}):
-            report["modifiers"] = entry
+            found["modifiers"] = entry
         stale = caches.stale(bpy.context.scene)
         played, lost = {cache.label for cache in stale}, sorted(self._baked - _baked_labels())
         entry = {
-            LOST: _shortened(lost),
-            "reset": _shortened([label for label in self._reset_caches() if label not in played]),
-            STALE: _shortened([caches.describe_stale(cache) for cache in stale]),
+            LOST: lost,
+            "reset": [label for label in self._reset_caches() if label not in played],
+            STALE: [caches.describe_stale(cache) for cache in stale],
         }
         if entry := {word: names for word, names in entry.items() if names}:
-            report["caches"] = entry
+            found["caches"] = entry
         if self._follows:
             _last.update(lasting)
-        return report
+        return found
 
     def _changes(self, key, digests):
         """What changed of a data-block, as a suffix of its name; "" if nothing did."""
@@ -257,8 +257,21 @@ def _entry(old, new, changed):
         ("changed", [name.strip() for name in changed.values()]),
     ):
         if names:
-            entry[word] = _shortened(sorted(names))
+            entry[word] = sorted(names)
     return entry
+
+
+def in_brief(differences):
+    """The differences with at most ``LISTED`` texts in place of the names: a series is one text, the rest a number."""
+    return {
+        kind: {word: _shortened(names) for word, names in entry.items()}
+        for kind, entry in differences.items()
+    }
+
+
+def counts(differences):
+    """The differences with the number of names in their place."""
+    return {kind: {word: len(names) for word, names in entry.items()} for kind, entry in differences.items()}
 
 
 def _shortened(names):

@@ -10,7 +10,7 @@ import traceback
 import bpy
 
 from .api_suspects import documentation_query, existing_names
-from .changes import MOST_BLOCKS, ChangeWatch
+from .changes import MOST_BLOCKS, ChangeWatch, counts, in_brief
 
 FILE = "<blender_execute>"
 _LONGEST_VALUE = 4000
@@ -19,7 +19,8 @@ _LINES_AROUND = 3  # lines shown before and after the one that failed
 
 
 def execute(arguments, report):
-    """Runs ``code``. Returns ``value`` (of a final expression), ``changed``, and ``error`` if it failed."""
+    """Runs ``code``. Returns ``value`` (of a final expression), ``error`` if it failed, what has ``changed`` in brief,
+    the ``counts`` of that, and the ``mode`` that Blender is in; ``unwatched`` says why changes are unknown."""
     del report
     from . import interpreter_state  # the user's own Blender, where code runs too, keeps another
 
@@ -58,9 +59,10 @@ def run_watched(code, restore=None, around=contextlib.nullcontext, most=MOST_BLO
         result["error"] = _describe_error(failure, code)
         failure = None  # frees the code's names
     try:
-        result["changed"] = watch.report()
+        differences = watch.differences()
+        result["changed"], result["counts"] = in_brief(differences), counts(differences)
     except Exception as error:
-        result["changed"] = {}
+        result["changed"], result["counts"] = {}, {}
         result["unwatched"] = f"{type(error).__name__}: {error}"
     result["mode"] = bpy.context.mode
     return result

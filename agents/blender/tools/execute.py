@@ -9,7 +9,7 @@ from pydantic import Field
 from agents.blender.checks.preflight import PreFlight, check_before_running
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from simworlds.counting import counted
-from simworlds.sandbox.replies import Claim, Text
+from simworlds.sandbox.replies import Claim, Count, Text
 
 if TYPE_CHECKING:
     from agents.blender.files.checkpoints import Checkpoint
@@ -64,11 +64,13 @@ class _Fault(Claim):
 
 
 class Outcome(Claim):
-    """The worker's report on executed code."""
+    """The worker's report on executed code. ``changed`` has names in brief; ``counts``, which is not passed on, how
+    many they are."""
 
     value: Text | None
     error: _Fault | None
     changed: dict[Text, dict[Text, list[Text]]]
+    counts: dict[Text, dict[Text, Count]] = Field(default_factory=dict[Text, dict[Text, Count]], exclude=True)
     mode: Text
     unwatched: Text = ""
 

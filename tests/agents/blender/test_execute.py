@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from agents.blender.tools.base import Call, ToolContext, parse
-from agents.blender.tools.execute import TOOL
+from agents.blender.tools.execute import TOOL, Outcome
 from agents.blender.tools.tag import TOOL as TAG
 from simworlds.sandbox.errors import Died, Refusal
 
@@ -82,6 +82,15 @@ def test_more_kinds_than_fit_are_counted_whole(session: LiveSession) -> None:
     assert len(added) == 41
     assert added[0] == "Aa.001 … Aa.005 (5)"
     assert added[-1] == "… and 45 more", "nine series of five"
+
+
+def test_changes_are_counted_whatever_the_names_look_like(session: LiveSession) -> None:
+    names = "[*(f'Ball.{n:03}' for n in range(1, 6)), 'a … b (7)', '… and 9 more']"
+    code = f"for name in {names}:\n    bpy.data.meshes.new(name)"
+    told = session.blender.call("execute", {"code": code}, Outcome.model_validate, timeout=60).value
+    assert told.changed["meshes"]["added"] == ["Ball.001 … Ball.005 (5)", "a … b (7)", "… and 9 more"]
+    assert told.counts == {"meshes": {"added": 7}}
+    assert "counts" not in told.model_dump()
 
 
 def test_reading_changes_nothing(session: LiveSession) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -23,7 +22,6 @@ if TYPE_CHECKING:
     from simworlds.sandbox.blender_process import WorkerReply
 
 _LISTED = 8
-_MANY = re.compile(r" … .* \((\d+)\)$|^… and (\d+) more$", re.DOTALL)
 _UNCHANGED = "**Nothing was done in the open Blender.**"
 _KEPT_OUT = "Do without that: the user's Blender is not to write files, open sockets or start anything."
 
@@ -60,13 +58,13 @@ class _Rehearsed(_Applied):
 
 @dataclass(frozen=True, slots=True)
 class _Rehearsal:
-    """What came of it: ``stopped`` if the code must not be applied, with why; else what it changed, and ``notes``.
+    """What came of it: ``stopped`` if the code must not be applied, with why; else its ``outcome``, and ``notes``.
 
     ``of_part``: the copy had a part of the scene, in which more is told of changes, and names may be free.
     """
 
     stopped: Result | None = None
-    changed: dict[str, Any] | None = None
+    outcome: Outcome | None = None
     of_part: bool = False
     seconds: float = 0.0
     notes: tuple[str, ...] = ()
@@ -132,9 +130,7 @@ def _rehearse(
         notes.append(
             f"Undo will not take back what the code leaves in Blender: {', '.join(rehearsed.stays)}."
         )
-    return _Rehearsal(
-        changed=rehearsed.changed, of_part=bool(of_part), seconds=reply.seconds, notes=tuple(notes)
-    )
+    return _Rehearsal(outcome=rehearsed, of_part=bool(of_part), seconds=reply.seconds, notes=tuple(notes))
 
 
 def _copy(context: AttachedContext, code: str, call: Call) -> tuple[Supervisor, str]:
@@ -166,12 +162,13 @@ def _apply(
     if checked.warnings:
         data["preflight"] = checked.data
     notes = [*rehearsal.notes, *(f"Blender was kept from this: {words}." for words in applied.noted)]
-    if rehearsal.changed is not None:
-        same = _comparable(rehearsal, rehearsal.changed) == _comparable(rehearsal, applied.changed)
+    if (rehearsed := rehearsal.outcome) is not None:
+        comparable = _added_and_removed if rehearsal.of_part else _names
+        same = comparable(rehearsed) == comparable(applied)
         data["rehearsal"] = {"seconds": rehearsal.seconds, "same": same}
         if not same:
             notes.append(
-                f"In the rehearsal, other things changed: {_listed(rehearsal.changed) or 'nothing'}."
+                f"In the rehearsal, other things changed: {_listed(rehearsed.changed) or 'nothing'}."
             )
     if applied.error is not None:
         data["scene"] = "The scene is as the code left it. To undo it: blender_undo()."
@@ -181,20 +178,16 @@ def _apply(
     return Result(text, data, failed=applied.error is not None)
 
 
-def _comparable(rehearsal: _Rehearsal, changed: dict[str, Any]) -> object:
-    if not rehearsal.of_part:
-        return changed
+def _names(outcome: Outcome) -> object:
+    return outcome.changed
+
+
+def _added_and_removed(outcome: Outcome) -> object:
+    """How many of each kind came and went, which is the same in a part of the scene and in the whole."""
     counts = {
-        kind: [sum(map(_count, entry.get(word, ()))) for word in ("added", "removed")]
-        for kind, entry in changed.items()
+        kind: [entry.get(word, 0) for word in ("added", "removed")] for kind, entry in outcome.counts.items()
     }
     return {kind: both for kind, both in counts.items() if any(both)}
-
-
-def _count(told: str) -> int:
-    """How many names an item of a list of changes stands for, which may be a series or the rest of them."""
-    many = _MANY.search(told)
-    return int(many[1] or many[2]) if many else 1
 
 
 def _called(
@@ -205,7 +198,7 @@ def _called(
         {
             "code": arguments.code,
             "seconds": arguments.timeout,
-            "rehearsed": rehearsal.changed is not None,
+            "rehearsed": rehearsal.outcome is not None,
             "restores": arguments.on_error == "restore",
         },
         _Applied.model_validate,

@@ -93,7 +93,6 @@ def _deadline(seconds):
     finally:
         done.set()
         watcher.join(1.0)
-        for _ in range(
-            2
-        ):  # at the end of a loop Python raises what it was told to: here, and not in what comes after
+        # At the end of a loop Python raises what it was told to: here, and not in what comes after.
+        for _ in range(2):
             pass

@@ -15,7 +15,7 @@ from simworlds.sandbox.inside import channel
 
 NONCE_BYTES = 32
 MEET_SECONDS = 20.0  # Blender answers when it has done what it is doing
-PROTOCOL = 1
+PROTOCOL = 2
 _CHUNK = 1 << 16
 _MOST_AT_ONCE = 64  # chunks that are read before the window gets its turn
 _MOST_UNSENT = 64 * 1024 * 1024
