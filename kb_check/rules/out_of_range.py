@@ -22,6 +22,7 @@ from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
 from kb_check.syntax.literals import items, number
 from kb_check.values.given import given_values
+from kb_serve.answer.facts.ranges import number_text, range_text
 
 if TYPE_CHECKING:
     import ast
@@ -77,13 +78,13 @@ def _judged(script: Script, taker: Taker, node: ast.expr) -> Iterator[Finding]:
         limit = high
     if limit is None:
         return
-    kept = f"{limit:.7g}" if taker.kind == "float" else f"{int(limit)}"
-    start, end = ("-∞" if low is None else f"{low:.7g}"), ("∞" if high is None else f"{high:.7g}")
+    kept, said = number_text(limit, taker.kind), number_text(value, taker.kind)
+    holds = range_text(low, high, taker.kind)
     span = script.span(node)
     literal = script.text(span).lstrip("+-").replace(".", "", 1).isdigit()
     yield Finding(
         RULE.id, "warning", span,
-        f"`{taker.path}` holds {start} … {end}: {value:.7g} becomes {kept}.{_advice(taker, value)}", taker.path, (),
+        f"`{taker.path}` holds {holds}: {said} becomes {kept}.{_advice(taker, value)}", taker.path, (),
         Fix(f"Write {kept}", (Edit(span, kept),)) if literal and not _advice(taker, value) else None,
     )  # fmt: skip
 

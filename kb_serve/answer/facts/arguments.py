@@ -12,7 +12,8 @@ from kb_build.symbols.lines import SET, literal, refusal_lines, said_taken, take
 from kb_build.symbols.records import RETURNS_NONE
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.facts.enum_items import item_lines
-from kb_serve.answer.facts.properties import UNITS, range_text
+from kb_serve.answer.facts.properties import UNITS
+from kb_serve.answer.facts.ranges import range_text
 from kb_serve.signatures import signature_arguments
 
 if TYPE_CHECKING:

@@ -22,6 +22,7 @@ from kb_build.symbols.records import (
     STOPS,
     UNBOUNDED,
 )
+from kb_serve.answer.facts.ranges import range_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -88,16 +89,6 @@ def _range_facts(symbol: Symbol) -> Iterator[str]:
         yield usual if symbol.flagged(STOPS) else f"{usual}, no limit"
     if text := _stops_text(symbol):
         yield text
-
-
-def range_text(low: float | None, high: float | None, kind: str) -> str:
-    """The range of a number; ``kind`` is its type, as symbols have it: integers are written whole, floats with the
-    digits that Blender's have.
-    """
-    digits = ".0f" if kind.startswith("int") else ".7g"
-    left = "−∞" if low is None else f"{low:{digits}}"
-    right = "∞" if high is None else f"{high:{digits}}"
-    return f"{left} … {right}"
 
 
 def _not_kept(symbol: Symbol) -> str:

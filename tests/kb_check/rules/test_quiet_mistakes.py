@@ -96,6 +96,13 @@ def test_clamped_numbers_are_what_blender_makes_of_them(rule_checker: Checker, t
     assert "math.radians(45)" in findings[2].message
 
 
+def test_large_integers_are_written_whole(rule_checker: Checker) -> None:
+    (found,) = rule_checker.check("import bpy\nbpy.ops.mesh.primitive_circle_add(vertices=123456789)")
+    assert "holds 3 … 10000000: 123456789 becomes 10000000." in found.message
+    assert found.fix is not None
+    assert found.fix.edits[0].text == "10000000"
+
+
 def test_numbers_that_are_kept_are_no_finding(rule_checker: Checker, tmp_path: Path) -> None:
     lines = list(KEPT)
     watched = {place + len(SETTING): value for place, value in enumerate(KEPT.values())}
