@@ -110,7 +110,15 @@ class Checker:
     def script(self, read: Read, package: Package) -> Script:
         """A script that was read, as the rules see it."""
         return Script(
-            read.code, read.tree, read.analysis, self.api, self.names, package, self.version, read.error
+            read.code,
+            read.tree,
+            read.analysis,
+            self.api,
+            self.names,
+            package,
+            self.version,
+            read.error,
+            read.path,
         )
 
     def package(self, reads: Iterable[Read] = ()) -> Package:

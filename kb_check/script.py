@@ -37,7 +37,8 @@ _Node = TypeVar("_Node", bound=ast.AST)
 
 @dataclass(frozen=True)
 class Script:
-    """One script, analysed for one Blender. ``package`` is what the files beside it register.
+    """One script, analysed for one Blender. ``package`` is what the files beside it register, ``path`` its place among
+    them, if it has one.
 
     ``error`` says why Python cannot parse it; ``tree`` and ``analysis`` are then of the part that could be read.
     ``kept`` is what :func:`once_per_script` and :func:`once_for_each` have found; it goes with the script.
@@ -51,6 +52,7 @@ class Script:
     package: Package
     version: tuple[int, ...] = field(default=())
     error: SyntaxError | None = None
+    path: str = ""
     kept: dict[object, object] = field(
         default_factory=dict[object, object], init=False, repr=False, compare=False
     )

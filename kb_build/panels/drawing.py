@@ -94,6 +94,13 @@ def shows_something(code: str) -> bool:
     return any(f".{name}(" in code for name in SHOWS | _OFFERS)
 
 
+def shown_property(call: ast.Call) -> tuple[ast.expr | None, ast.expr | None]:
+    """What a call of one of ``SHOWS`` gets: what has the property, and what names it; None for what is left out."""
+    given = {keyword.arg: keyword.value for keyword in call.keywords}
+    owner = call.args[0] if call.args else given.get("data")
+    return owner, call.args[1] if len(call.args) > 1 else given.get("property")
+
+
 def places_in(analysis: Analysis, symbols: Symbols) -> list[Place]:
     """Where a script shows properties."""
     tree = analysis.tree
@@ -330,9 +337,7 @@ class Drawing(Conditions):
                 self._assign(part.target, part.value)
 
     def _show(self, call: ast.Call, receiver: ast.expr) -> None:
-        given = {keyword.arg: keyword.value for keyword in call.keywords}
-        owner = call.args[0] if call.args else given.get("data")
-        named = call.args[1] if len(call.args) > 1 else given.get("property")
+        owner, named = shown_property(call)
         if owner is None or named is None:
             return
         row = self.script.analysis.resolutions.get(named)

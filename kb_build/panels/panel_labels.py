@@ -10,7 +10,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.syntax.trees import walk
-from kb_build.panels.drawing import SHOWS
+from kb_build.panels.drawing import SHOWS, shown_property
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -89,14 +89,14 @@ def _shown(cls: ast.ClassDef, analysis: Analysis) -> Iterator[ShownProperty]:
         for node in walk(function):
             if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
                 continue
-            given = {keyword.arg: keyword.value for keyword in node.keywords}
-            named = node.args[1] if len(node.args) > 1 else given.get("property")
+            _, named = shown_property(node)
             row = analysis.resolutions.get(named) if node.func.attr in SHOWS and named is not None else None
             if row is None or row.kind != "button":
                 continue
             found = row.symbols or row.possible
             if len(found) == 1:
-                yield ShownProperty(found[0], cls.name, function.name, _text(given.get("text")))
+                text = next((keyword.value for keyword in node.keywords if keyword.arg == "text"), None)
+                yield ShownProperty(found[0], cls.name, function.name, _text(text))
 
 
 def _text(node: ast.expr | None) -> str:

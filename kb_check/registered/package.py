@@ -31,14 +31,14 @@ class Package:
         self._possible: set[str] = set()
         self._classes: dict[str, set[str]] = {}  # property → the classes that have it
         self._analyses: list[Analysis] = []
-        self._paths: list[str] = []  # theirs; empty where there is none
+        self._modules: list[str] = []  # their dotted names; empty where there is no path
 
     def add(self, analysis: Analysis, possible: Iterable[str] = (), path: str = "") -> None:
         """Adds what a file registers. ``possible`` are names that a part which cannot be read may register, ``path``
         is its place, as :func:`paths_in_package` has it.
         """
         self._analyses.append(analysis)
-        self._paths.append(path)
+        self._modules.append(module_name(path)[0])
         self._operators |= analysis.own_operators
         self._types |= analysis.own_types
         self._possible.update(possible)
@@ -64,18 +64,17 @@ class Package:
             for node in walk(other)
         )
 
-    def submodules(self, tree: ast.Module) -> frozenset[str]:
-        """The modules that may be bound in the file of a tree by being imported anywhere, ``from .sub import x``: those
-        right below it, if it is an ``__init__.py``. One without a path may be.
+    def submodules(self, path: str, tree: ast.Module) -> frozenset[str]:
+        """The modules that may be bound in a file by being imported anywhere, ``from .sub import x``: those right below
+        it, if it is an ``__init__.py``. One without a path (see :meth:`add`) may be.
         """
-        path = next(
-            (path for one, path in zip(self._analyses, self._paths, strict=True) if one.tree is tree), ""
-        )
         package, is_package = module_name(path)
         if path and not is_package:
             return frozenset()
         within = f"{package}."
-        found = {name.removeprefix(within) for name in self._files if is_package and name.startswith(within)}
+        found = {
+            name.removeprefix(within) for name in self._modules if is_package and name.startswith(within)
+        }
         for node in walk(tree):
             if isinstance(node, ast.ImportFrom) and node.level == 1 and node.module:
                 found.add(node.module)
@@ -98,16 +97,11 @@ class Package:
         )
 
     @cached_property
-    def _files(self) -> list[str]:
-        """The dotted names of the files."""
-        return [module_name(path)[0] for path in self._paths]
-
-    @cached_property
     def foreign_addon(self) -> str:
         """An add-on that a file enables and that is not among what is known here; empty for none. Asked for once all
         files were added.
         """
-        return foreign_addon(self._analyses, self._files)
+        return foreign_addon(self._analyses, self._modules)
 
     @cached_property
     def enables_any_addon(self) -> bool:

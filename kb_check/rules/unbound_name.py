@@ -110,7 +110,7 @@ def _asked_for(script: Script) -> set[ast.expr]:
 
 @once_per_script
 def _submodules(script: Script) -> frozenset[str]:
-    return script.package.submodules(script.tree)
+    return script.package.submodules(script.path, script.tree)
 
 
 def _unread(script: Script) -> set[ast.expr]:
