@@ -43,7 +43,9 @@ from kb_serve.recognise.named.newer_nodes import (
 )
 from kb_serve.recognise.named.spellings import Spellings
 from kb_serve.recognise.recognition import Recognition
+from kb_serve.recognise.removed.lost_values import LostValues
 from kb_serve.recognise.removed.old_code import OldCode
+from kb_serve.recognise.removed.old_texts import OldTexts
 from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 from kb_serve.recognise.resolver import Resolver
 
@@ -102,10 +104,12 @@ class Recogniser:
         self._spellings = Spellings(reader, self._removed)
         self._enum_values = EnumValues(reader)
         self._messages = Messages(reader, self._removed, self._enum_values)
-        self._old = OldCode(reader, resolver, self._removed)
+        self._lost_values = LostValues(reader, self._removed)
+        old = OldCode(reader, self._removed)
+        old_texts = OldTexts(reader, resolver, self._removed, old)
         operators = OperatorWords(reader)
-        self._expressions = Expressions(reader, resolver, Corrector(reader, resolver), self._old, operators)
-        self._uses = Uses(reader, resolver, self._enum_values, self._old)
+        self._expressions = Expressions(reader, resolver, Corrector(reader, resolver), old, operators)
+        self._uses = Uses(reader, resolver, self._enum_values, old_texts, self._lost_values)
         self._missing = MissingNames(reader, operators)
 
     def recognise(self, query: str) -> Recognition:
@@ -188,7 +192,7 @@ class Recogniser:
                 continue
             for match in [match for match in recognition.matches if match.sure >= _SURE]:
                 symbol = self._reader.symbol(match.id)
-                if symbol and (removed := self._old.value(symbol, value)):
+                if symbol and (removed := self._lost_values.value(symbol, value)):
                     recognition.add_removed(removed)
 
     def _values_of_nothing(self, query: str, recognition: Recognition) -> None:

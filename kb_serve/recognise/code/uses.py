@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from kb_serve.recognise.chains.chains import Chain
     from kb_serve.recognise.named.enum_values import EnumValues
     from kb_serve.recognise.recognition import Recognition
-    from kb_serve.recognise.removed.old_code import OldCode
+    from kb_serve.recognise.removed.lost_values import LostValues
+    from kb_serve.recognise.removed.old_texts import OldTexts
     from kb_serve.recognise.resolver import Resolver
 
 _FEW = 3
@@ -36,10 +37,18 @@ _OF_OPERATOR = "`{0}` may be the properties of an operator: `{0} = layout.operat
 class Uses:
     """Checks how code uses the names of one base."""
 
-    def __init__(self, reader: BaseReader, resolver: Resolver, enum_values: EnumValues, old: OldCode) -> None:
+    def __init__(
+        self,
+        reader: BaseReader,
+        resolver: Resolver,
+        enum_values: EnumValues,
+        old_texts: OldTexts,
+        lost_values: LostValues,
+    ) -> None:
         self._reader = reader
         self._enum_values = enum_values
-        self._old = old
+        self._old_texts = old_texts
+        self._lost_values = lost_values
         self._products = Products(resolver)
 
     def check(self, query: str, chains: list[Chain], recognition: Recognition) -> None:
@@ -47,10 +56,10 @@ class Uses:
         for product, factor in self._products.wrong(query, chains):
             recognition.notes += (f"Write `{product}`.", WITH_AT)
             recognition.add(factor, _SURE, "wrong operator")
-        in_strings = (*self._old.in_strings(query), *self._old.in_keyword(query))
-        for removed in (*self._old.in_imports(query), *in_strings):
+        old = self._old_texts
+        for removed in (*old.in_imports(query), *old.in_strings(query), *old.in_keyword(query)):
             recognition.add_removed(removed)
-        for taken_as in self._old.still_taken_in_strings(query):
+        for taken_as in old.still_taken_in_strings(query):
             recognition.add_former_name(taken_as, _SURE)
         for chain in chains:
             if _sets_a_socket(chain):
@@ -70,13 +79,13 @@ class Uses:
                 where = self._enum_values.where(symbol.path, value)
                 if where and not is_met(symbol.path, where, query, chains, self._reader):
                     recognition.notes.append(self._enum_values.condition(symbol.path, value))
-            old = list(self._old.in_values(chain, symbol))
-            for removed in old:
+            lost = list(self._lost_values.in_values(chain, symbol))
+            for removed in lost:
                 recognition.add_removed(removed)
-            gone = {removed.path for removed in (*old, *recognition.removed)}
+            gone = {removed.path for removed in (*lost, *recognition.removed)}
             notes = list(wrong_arguments(chain, symbol, self._reader, gone))
             renamed = dict(
-                filter(None, (one.renamed_argument(symbol.path) for one in (*old, *recognition.removed)))
+                filter(None, (one.renamed_argument(symbol.path) for one in (*lost, *recognition.removed)))
             )
             recognition.notes += (*notes, *wrong_values(chain, symbol, gone, self._reader, renamed))
             if any(note.startswith(NO_OVERRIDE) for note in notes):
@@ -87,7 +96,7 @@ class Uses:
         guesses = list(filter(None, map(self._reader.symbol, recognition.guesses.get(chain.key, ()))))
         if any(is_method_of_python(_name(chain), guess) for guess in guesses):
             return
-        lost = [next(self._old.in_values(chain, guess), None) for guess in guesses]
+        lost = [next(self._lost_values.in_values(chain, guess), None) for guess in guesses]
         if len(guesses) == 1 and keywords(chain):  # which may have told it from others of its name
             recognition.notes += wrong_arguments(chain, guesses[0], self._reader)
         # A value that what it may be read as once took tells that it is meant.

@@ -1,31 +1,27 @@
-"""Finds the names in code that only other versions have: members, paths, keyword arguments, enum values, sockets."""
+"""Finds the names in the expressions of code that only other versions have: members, paths, functions, sockets."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from itertools import islice
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
 from kb_build.symbols.api_names import OPERATORS, SIDES, TYPES, interface_part
-from kb_build.symbols.flags import NODE_FAMILIES
 from kb_build.symbols.paths import is_socket, last_name, socket_node, split_path
-from kb_serve.recognise.chains.call_texts import arguments, texts_given, texts_in
+from kb_serve.recognise.chains.call_texts import texts_given
 from kb_serve.recognise.chains.chain_starts import ROOTS
-from kb_serve.recognise.chains.chains import find_chains
 from kb_serve.recognise.chains.variables import USUAL, usual_classes, variable_fit
 from kb_serve.recognise.removed.lost_names import LostName, LostNames, is_telling
 from simworlds.releases import version_key
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Sequence
 
-    from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.chains.chains import Chain, ChainStep
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
-    from kb_serve.recognise.resolver import ResolvedChain, Resolver
+    from kb_serve.recognise.resolver import ResolvedChain
 
 _LIKELY_FIT = 0.6  # from this fit of a variable's name on, its class is believed if it had the name once
 _BETTER = 0.05  # by this a removed class must fit a name more than one of today
@@ -33,22 +29,8 @@ _NAMED_AFTER = 0.8  # … it is named after a class
 _SHORTEST = 4  # letters of a name that tells a class by its end
 _MOST_NAMES = 6
 _MANY_OWNERS = 3  # more classes than these had a name: which one is meant is not known
-_WORDS_OF_CLASS = re.compile(r"(?=[A-Z]+[a-z_]+[A-Z])[A-Z]\w+")
-_CLASS_NAME = re.compile(rf"""(["'])({_WORDS_OF_CLASS.pattern})\1""")  # not ``"Lamp"``, an object's name
-_OPERATOR_NAME = re.compile(r"""(["'])([a-z]\w*\.[a-z]\w+)\1""")
-# A property named in a string: ``layout.prop(ob, "name")``, ``getattr(ob, "name")``, ``ob.keyframe_insert("name")``.
-_PROPERTY_NAMES = (
-    re.compile(r"""\b(?:prop|prop_search|[gs]etattr|hasattr)\(\s*([A-Za-z_][\w.]*)\s*,\s*["'](\w+)["']"""),
-    re.compile(
-        # Only from the start of a dotted name: trying each part of a long one takes seconds.
-        r"""(?<![\w.])([A-Za-z_][\w.]*)\.(?:keyframe_(?:insert|delete)|driver_(?:add|remove)|property_unset)\("""
-        r"""\s*(?:(?:data_)?path\s*=\s*)?["'](\w+)["']"""
-    ),
-)
-_IMPORT = re.compile(r"\bimport\s+([a-z_][\w.]*(?:\s*,\s*[a-z_][\w.]*)*)")
-_FROM = re.compile(r"\bfrom\s+([a-z][\w.]*)\s+import\s+\(?\s*(\w+(?:\s*,\s*\w+)*)")
-_KEYWORD = re.compile(r"""\W*(\w+)\s*=\s*(['"])([A-Z][A-Z0-9_]+)\2\W*""")  # alone
-_MOST_QUOTED = 12
+# The name of a class that has several words, which no variable is called like.
+WORDS_OF_CLASS = re.compile(r"(?=[A-Z]+[a-z_]+[A-Z])[A-Z]\w+")
 _SAY_NOTHING = frozenset({"node", *"0123456789"})  # words of a variable's name that no node is told by
 _THEME = f"{TYPES}Theme"  # its hundreds of colours are called like everything else
 
@@ -62,11 +44,10 @@ class OldName:
 
 
 class OldCode:
-    """Finds removed names against one base."""
+    """Finds removed names in chains, against one base."""
 
-    def __init__(self, reader: BaseReader, resolver: Resolver, removed: RemovedSymbolLookup) -> None:
+    def __init__(self, reader: BaseReader, removed: RemovedSymbolLookup) -> None:
         self._reader = reader
-        self._resolver = resolver
         self._removed = removed
         self._lost_names = LostNames(reader, removed)
 
@@ -168,7 +149,7 @@ class OldCode:
 
     def _class(self, chain: Chain) -> OldName | None:
         """A class by its name alone, of several words: ``CompositorNodeComposite``, not ``Lamp``."""
-        if not _WORDS_OF_CLASS.fullmatch(chain.root) or self._reader.entry(TYPES + chain.root):
+        if not WORDS_OF_CLASS.fullmatch(chain.root) or self._reader.entry(TYPES + chain.root):
             return None
         removed = self._removed.of_path(TYPES + chain.root)
         return OldName(removed, chain.steps) if removed else None
@@ -368,102 +349,6 @@ class OldCode:
         }
         return len(ways) == 1 and len(ways.pop()) > 1
 
-    # Names in strings, and keyword arguments
-
-    def in_values(self, chain: Chain, symbol: Symbol) -> Iterator[RemovedSymbol]:
-        """What this version lost: values that a property is set to or compared with, a call's arguments and theirs."""
-        for value in chain.values:
-            if removed := self.value(symbol, value):
-                yield removed
-        if chain.call is not None and symbol.parameters:
-            yield from self._arguments(chain.call, symbol)
-
-    def value(self, symbol: Symbol, value: str) -> RemovedSymbol | None:
-        """An item that an enumeration lost; where the items may depend on the build only what a source tells of."""
-        if not symbol.enum_items or any(item.identifier == value for item in symbol.enum_items):
-            return None
-        removed = self._removed.of_part(symbol.path, f":{value}")
-        if removed is None or removed.successors:
-            return removed
-        # Of a class that had another name all items are gone, and of an unlisted enumeration those of one build.
-        same = removed.path.startswith(symbol.path)
-        listed = removed.is_dated(self._reader.history.history_versions)
-        return removed if same and listed and not symbol.enum_computed else None
-
-    def _arguments(self, text: str, symbol: Symbol) -> Iterator[RemovedSymbol]:
-        parameters = {parameter.name: parameter for parameter in symbol.parameters}
-        positions = list(parameters) if symbol.kind == "function" else []
-        given = list(arguments(text))
-        too_many = sum(not keyword and value != "self" for keyword, value in given) > len(positions)
-        for number, (keyword, value) in enumerate(given):
-            # ``to_mesh(scene, …)``: called like the parameter that it is meant for.
-            named = keyword or (value if too_many and value.isidentifier() else "")
-            name = named or (positions[number] if number < len(positions) else "")
-            if name not in parameters:
-                if named and (removed := self._lost(symbol, named)):
-                    yield removed
-                continue
-            known = {item.identifier for item in parameters[name].enum_items}
-            for item in texts_in(value):
-                # Of what Blender puts together while it runs, the items are not known.
-                if known and item not in known:
-                    yield from filter(None, (self._removed.of_part(symbol.path, f"({name}):{item}"),))
-
-    def _lost(self, symbol: Symbol, keyword: str) -> RemovedSymbol | None:
-        """A parameter that a function had before; not one that only newer versions have."""
-        removed = self._removed.of_part(symbol.path, f"({keyword})")
-        known = removed is not None and (
-            removed.successors or removed.is_dated(self._reader.history.history_versions)
-        )
-        return removed if known else None
-
-    def in_imports(self, text: str) -> Iterator[RemovedSymbol]:
-        """Removed modules, and removed names of modules, that are imported."""
-        paths = [name.strip() for match in _IMPORT.finditer(text) for name in match[1].split(",")]
-        for match in _FROM.finditer(text):
-            paths += [match[1], *(f"{match[1]}.{name.strip()}" for name in match[2].split(","))]
-        for path in paths[:_MOST_QUOTED]:
-            if removed := self._removed.of_path(path) or self._removed.of_path(path.partition(".")[0]):
-                yield removed
-
-    def in_keyword(self, text: str) -> Iterator[RemovedSymbol]:
-        """The value that an argument lost which is all of a text, ``icon='LAMP'``: of the function that counts most.
-
-        Nothing where something of that name takes it today.
-        """
-        match = _KEYWORD.fullmatch(text) if _has_quotes(text) else None
-        if match is None:
-            return
-        today = (
-            owner for owner, item, _ in self._reader.names.enum_owners(key(match[3])) if item == match[3]
-        )
-        if any(owner.endswith((f"({match[1]})", f".{match[1]}")) for owner in today):
-            return
-        end = f"({match[1]}):{match[3]}"
-        paths = [path for path in self._reader.history.removed_named(match[3]) if path.endswith(end)]
-        found = [one for one in map(self._removed.of_path, paths) if one and one.targets]
-        weights = self._reader.usage.weights([one.path.removesuffix(end) for one in found])
-        found.sort(key=lambda one: -weights.get(one.path.removesuffix(end), 0.0))
-        yield from found[:1]
-
-    def still_taken_in_strings(self, text: str) -> Iterator[str]:
-        """The classes that one gets by former names which are quoted: ``nodes.new("ShaderNodeBsdfGlossy")``."""
-        if not _has_quotes(text):
-            return
-        yield from filter(None, map(self._reader.history.still_works, _quoted_paths(text)))
-
-    def in_strings(self, text: str) -> Iterator[RemovedSymbol]:
-        """Removed classes, operators and properties whose names are quoted: ``nodes.new("ShaderNodeTexMusgrave")``."""
-        if not _has_quotes(text):
-            return
-        quoted = filter(None, map(self._removed.of_path, _quoted_paths(text)))
-        yield from (removed for removed in quoted if removed.targets or _is_given_as_text(removed.path))
-        for pattern in _PROPERTY_NAMES:
-            for match in islice(pattern.finditer(text), _MOST_QUOTED):
-                for chain in find_chains(f"{match[1]}.{match[2]}")[:1]:
-                    if old := self.in_chain(chain, self._resolver.resolve(chain), is_quoted=True):
-                        yield old.removed
-
 
 def _is_set_to_item(chain: Chain) -> bool:
     """Whether a chain is a variable's attribute that is set to what only an enumeration takes: ``c.x = 'PATH'``."""
@@ -473,20 +358,3 @@ def _is_set_to_item(chain: Chain) -> bool:
 def _old(chain: Chain, lost: LostName | None) -> OldName | None:
     """What was lost, with the steps of the chain behind it."""
     return OldName(lost.removed, chain.steps[lost.steps :]) if lost else None
-
-
-def _is_given_as_text(path: str) -> bool:
-    """Whether scripts give such a class or operator by its name in a text: not ``LocRotScale``, a keying set's."""
-    name = last_name(path)
-    return path.startswith(OPERATORS) or name.startswith(NODE_FAMILIES) or bool(interface_part(name))
-
-
-def _has_quotes(text: str) -> bool:
-    return "'" in text or '"' in text
-
-
-def _quoted_paths(text: str) -> Iterator[str]:
-    """The paths of classes and operators whose names are quoted."""
-    for pattern, prefix in ((_CLASS_NAME, TYPES), (_OPERATOR_NAME, OPERATORS)):
-        for match in islice(pattern.finditer(text), _MOST_QUOTED):
-            yield prefix + match[2]
