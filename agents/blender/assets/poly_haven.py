@@ -65,7 +65,6 @@ _MAPS = {
     "emission": "emission",
     "emissive": "emission",
 }
-_PACKED = ("arm", "ao")  # used where the three maps are not there by themselves
 _LIST_SECONDS = 3600.0  # how long a list of assets counts
 _FORMATS = ("jpg", "png", "exr")
 Words = list[Annotated[str, Field(max_length=300)]]

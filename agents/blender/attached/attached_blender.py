@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 import secrets
 import socket
 import threading
@@ -32,7 +31,6 @@ if TYPE_CHECKING:
 
     from simworlds.sandbox.blender_process import Progress
 
-_LOG = logging.getLogger(__name__)
 _GRACE_SECONDS = 10.0  # after a call's deadline: what Blender itself does cannot be interrupted
 _CHECK_SECONDS = 0.05
 _SEND_SECONDS = 20.0

@@ -11,8 +11,6 @@ import sys
 
 import bpy
 
-_CONTEXT = "bpy.types.Context"
-
 
 def present(arguments, report):
     """For each of ``paths``, whether it exists. What cannot be told does not."""
