@@ -51,39 +51,47 @@ _LONGEST_URI = 2_000
 _FOR_ERRORS = 500
 
 
-def make_server(service: Service) -> Server[None]:
-    """The MCP server, without a transport. It opens bases, and rebuilds outdated ones, while it runs."""
-    # Answers wait for this; the handshake does not.
-    ready = anyio.Event()
-    # One thread beside the event loop: more would only wait for each other.
-    thread = anyio.CapacityLimiter(1)
+class _Requests:
+    """What clients ask for, answered by a service that gets ready while the server runs."""
+
+    def __init__(self, service: Service) -> None:
+        self._service = service
+        # Answers wait for this; the handshake does not.
+        self._ready = anyio.Event()
+        # One thread beside the event loop: more would only wait for each other.
+        self._thread = anyio.CapacityLimiter(1)
 
     @asynccontextmanager
-    async def lifespan(_server: Server[None]) -> AsyncGenerator[None]:
-        async def prepare() -> None:
-            try:
-                await anyio.to_thread.run_sync(service.warm)
-            finally:
-                ready.set()
-            await anyio.to_thread.run_sync(service.load_search)
-            await anyio.to_thread.run_sync(service.upkeep.run, abandon_on_cancel=True)
-
+    async def lifespan(self, _server: Server[None]) -> AsyncGenerator[None]:
+        """Opens the base, and sees to it as long as the server runs."""
         async with anyio.create_task_group() as tasks:
-            tasks.start_soon(prepare)
+            tasks.start_soon(self._prepare)
             try:
                 yield
             finally:
-                service.upkeep.stop()
+                self._service.upkeep.stop()
                 tasks.cancel_scope.cancel()
 
-    async def call_tool(_context: _Context, params: types.CallToolRequestParams) -> types.CallToolResult:
+    async def _prepare(self) -> None:
+        try:
+            await anyio.to_thread.run_sync(self._service.warm)
+        finally:
+            self._ready.set()
+        await anyio.to_thread.run_sync(self._service.load_search)
+        await anyio.to_thread.run_sync(self._service.upkeep.run, abandon_on_cancel=True)
+
+    async def call_tool(
+        self, _context: _Context, params: types.CallToolRequestParams
+    ) -> types.CallToolResult:
+        """A tool's answer; what it refuses, or fails on, is told to the model. Raises MCPError for an unknown tool."""
         name = params.name
         if name not in TOOL_NAMES:
             raise MCPError(
                 types.INVALID_PARAMS, f"There is no tool {name[:80]!r}. Available: {', '.join(TOOL_NAMES)}."
             )
-        if not ready.is_set():
-            await ready.wait()
+        if not self._ready.is_set():
+            await self._ready.wait()
+        service, thread = self._service, self._thread
         try:
             # Handing a short call over to a thread and back costs more than others gain. A thread that is at work
             # may keep the base locked.
@@ -99,39 +107,47 @@ def make_server(service: Service) -> Server[None]:
             )
 
     async def read_resource(
-        _context: _Context, params: types.ReadResourceRequestParams
+        self, _context: _Context, params: types.ReadResourceRequestParams
     ) -> types.ReadResourceResult:
+        """A resource's text. Raises MCPError where it cannot be read."""
         uri = str(params.uri)
         if uri == SCHEMAS.uri:
             return _contents(uri, schemas_text(listing()), _JSON)
-        await ready.wait()
+        await self._ready.wait()
         try:
-            text, kind = await anyio.to_thread.run_sync(_resource, service, uri, limiter=thread)
+            text, kind = await anyio.to_thread.run_sync(_resource, self._service, uri, limiter=self._thread)
         except KBServeError as error:
             raise MCPError(types.INVALID_PARAMS, str(error), {"uri": uri[:_FOR_ERRORS]}) from error
         return _contents(uri, text, kind)
 
-    async def list_tools(_context: _Context, _page: _Listing) -> types.ListToolsResult:
-        return types.ListToolsResult(tools=list(map(as_listed, listing())))
 
-    async def list_resources(_context: _Context, _page: _Listing) -> types.ListResourcesResult:
-        return types.ListResourcesResult(resources=[BASE_LIST, SCHEMAS])
+async def _list_tools(_context: _Context, _page: _Listing) -> types.ListToolsResult:
+    return types.ListToolsResult(tools=list(map(as_listed, listing())))
 
-    async def list_templates(_context: _Context, _page: _Listing) -> types.ListResourceTemplatesResult:
-        return types.ListResourceTemplatesResult(resource_templates=TEMPLATES)
 
+async def _list_resources(_context: _Context, _page: _Listing) -> types.ListResourcesResult:
+    return types.ListResourcesResult(resources=[BASE_LIST, SCHEMAS])
+
+
+async def _list_templates(_context: _Context, _page: _Listing) -> types.ListResourceTemplatesResult:
+    return types.ListResourceTemplatesResult(resource_templates=TEMPLATES)
+
+
+def make_server(service: Service) -> Server[None]:
+    """The MCP server, without a transport. It opens bases, and rebuilds outdated ones, while it runs."""
+    requests = _Requests(service)
     return Server(
         "simworlds",
         version=own_version(),
         title="SimWorlds: Blender documentation",
         instructions=INSTRUCTIONS,
-        lifespan=lifespan,
+        lifespan=requests.lifespan,
         get_tool_input_schema=lambda name: next((t.input_schema for t in listing() if t.name == name), None),
-        on_list_tools=list_tools,
-        on_call_tool=call_tool,
-        on_list_resources=list_resources,
-        on_list_resource_templates=list_templates,
-        on_read_resource=read_resource,
+        on_list_tools=_list_tools,
+        on_call_tool=requests.call_tool,
+        on_list_resources=_list_resources,
+        on_list_resource_templates=_list_templates,
+        on_read_resource=requests.read_resource,
     )
 
 

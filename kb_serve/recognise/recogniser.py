@@ -51,6 +51,7 @@ from kb_serve.recognise.resolver import Resolver
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
+    from kb_serve.recognise.code.own_names import OwnNames
 
 # What the panels of render engines name engines by, whether this Blender has them or not: none is set.
 _FOR_ENGINES = re.compile(r"\bCOMPAT_ENGINES\s*=\s*[{(\[][^})\]]*")
@@ -127,34 +128,7 @@ class Recogniser:
         self._spellings.recognise(query, recognition)
         is_settled = recognition.best is not None and recognition.best.sure >= 1
         if not is_settled:
-            self._messages.recognise(query, recognition)
-            lacked = [*recognition.missing]
-            text = without_callers_names(without_wording(query))
-            code = without_callers_names(without_wording(without_values(query)))
-            is_plain = code == query and "/" not in query
-            found = chains if is_plain else own.without(with_bindings(code, _outside_of_paths(code)))
-            self._expressions.recognise(found, recognition)
-            if any(True for _ in members_named(query)):
-                recognition.alike, recognition.alike_lost = [], None
-            if any(match.why == "error message" and match.sure >= _TOLD for match in recognition.matches):
-                # Of which collection it is, the message has told.
-                recognition.missing = [one for one in recognition.missing if one.owner != COLLECTION]
-            if items_listed(query):  # by which the enumeration is found
-                symbols = {match.id: self._reader.symbol(match.id) for match in recognition.matches}
-                others = {path for path, symbol in symbols.items() if symbol and is_other_enum(symbol, query)}
-                recognition.matches = [match for match in recognition.matches if match.id not in others]
-                recognition.alike = []
-            if lacked or (is_message(query) and says_what_failed(query)):
-                # What else the line lacks that failed, Python has found there, or has not come to.
-                recognition.missing, recognition.doubted = lacked, None
-            self._enum_values.recognise(text, recognition, classes_of_things(query))
-            self._removed_values(text, recognition)
-            described = "" if is_message(query) else asked_of_inputs(query)
-            if described and self._reader.entry(described):
-                recognition.add(described, _DESCRIBED, "described")
-            if extended := None if is_message(query) else menu_extended(query, self._reader):
-                recognition.add(extended.path, _DESCRIBED, "described")
-                recognition.notes.append(extended.note)
+            self._read(query, chains, own, recognition)
         self._uses.check(query, chains, recognition)
         if not is_settled:
             self._values_of_nothing(query, recognition)
@@ -173,6 +147,42 @@ class Recogniser:
         self._missing.explain(recognition)
         recognition.matches.sort(key=lambda match: (-match.sure, match.why != "successor"))
         return recognition
+
+    def _read(self, query: str, chains: list[Chain], own: OwnNames, recognition: Recognition) -> None:
+        """Adds what a query names that is more than one spelling: in messages, expressions, values and plain words."""
+        self._messages.recognise(query, recognition)
+        lacked = [*recognition.missing]
+        code = without_callers_names(without_wording(without_values(query)))
+        is_plain = code == query and "/" not in query
+        found = chains if is_plain else own.without(with_bindings(code, _outside_of_paths(code)))
+        self._expressions.recognise(found, recognition)
+        if any(True for _ in members_named(query)):
+            recognition.alike, recognition.alike_lost = [], None
+        if any(match.why == "error message" and match.sure >= _TOLD for match in recognition.matches):
+            # Of which collection it is, the message has told.
+            recognition.missing = [one for one in recognition.missing if one.owner != COLLECTION]
+        if items_listed(query):  # by which the enumeration is found
+            symbols = {match.id: self._reader.symbol(match.id) for match in recognition.matches}
+            others = {path for path, symbol in symbols.items() if symbol and is_other_enum(symbol, query)}
+            recognition.matches = [match for match in recognition.matches if match.id not in others]
+            recognition.alike = []
+        if lacked or (is_message(query) and says_what_failed(query)):
+            # What else the line lacks that failed, Python has found there, or has not come to.
+            recognition.missing, recognition.doubted = lacked, None
+        text = without_callers_names(without_wording(query))
+        self._enum_values.recognise(text, recognition, classes_of_things(query))
+        self._removed_values(text, recognition)
+        if not is_message(query):
+            self._described(query, recognition)
+
+    def _described(self, query: str, recognition: Recognition) -> None:
+        """Adds what plain words describe: the inputs of a modifier, a menu that is to be extended."""
+        described = asked_of_inputs(query)
+        if described and self._reader.entry(described):
+            recognition.add(described, _DESCRIBED, "described")
+        if extended := menu_extended(query, self._reader):
+            recognition.add(extended.path, _DESCRIBED, "described")
+            recognition.notes.append(extended.note)
 
     def _is_of_blender(self, name: str) -> bool:
         """Whether a module or class is Blender's, or was of other versions or builds."""
