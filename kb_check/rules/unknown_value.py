@@ -21,7 +21,7 @@ from dataclasses import replace
 from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
 
-from kb_build.flow.evaluation.expressions import constants
+from kb_build.flow.evaluation.given_values import constants
 from kb_build.flow.values.types import UNKNOWN, Resolution, literal_text
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import NODE_FAMILIES, never_taken

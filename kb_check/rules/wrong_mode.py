@@ -36,7 +36,7 @@ import ast
 from bisect import bisect_left, bisect_right
 from typing import TYPE_CHECKING
 
-from kb_build.flow.evaluation.expressions import constants
+from kb_build.flow.evaluation.given_values import constants
 from kb_check.calls.sites import calls
 from kb_check.findings import Finding
 from kb_check.modes.run import enters_modes, states

@@ -19,7 +19,7 @@ from kb_build.flow.blender.facts import (
     OPERATOR_PROPERTIES,
 )
 from kb_build.flow.calls.callbacks import Callbacks
-from kb_build.flow.evaluation.expressions import CARRYING, constants
+from kb_build.flow.evaluation.given_values import CARRYING, constants
 from kb_build.flow.state.core import ANY
 from kb_build.flow.values.types import (
     BOOL,

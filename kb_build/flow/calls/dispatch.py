@@ -12,7 +12,7 @@ from kb_build.flow.calls.api_calls import ApiCalls
 from kb_build.flow.calls.python_calls import PythonCalls
 from kb_build.flow.calls.read_calls import ReadCall
 from kb_build.flow.calls.script_calls import ScriptCalls
-from kb_build.flow.evaluation.expressions import CARRYING, constants
+from kb_build.flow.evaluation.given_values import CARRYING, constants
 from kb_build.flow.values.type_parts import entered
 from kb_build.flow.values.types import (
     NONE,

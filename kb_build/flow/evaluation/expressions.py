@@ -4,30 +4,33 @@ from __future__ import annotations
 
 import ast
 import builtins
-import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
-from kb_build.flow.blender.api import ARRAY
-from kb_build.flow.blender.facts import COMPUTED, COMPUTED_IN_PLACE, DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE
-from kb_build.flow.evaluation.members import Members
-from kb_build.flow.state.core import ANY, DEEPEST, StepsExhausted
-from kb_build.flow.state.doubts import NO_DOUBTS, without
+from kb_build.flow.blender.facts import COMPUTED, COMPUTED_IN_PLACE, PRODUCTS, READ_ACTIVE
+from kb_build.flow.evaluation.given_values import GivenValues
+from kb_build.flow.evaluation.operations import (
+    LONGEST_LITERAL,
+    SEQUENCE,
+    VECTOR,
+    comparison,
+    is_math,
+    math_operand,
+    operation_type,
+)
+from kb_build.flow.state.core import DEEPEST, StepsExhausted
+from kb_build.flow.state.doubts import NO_DOUBTS
 from kb_build.flow.state.scopes import chain_text, item_text
 from kb_build.flow.syntax.trees import children
 from kb_build.flow.values.type_parts import telling, tells
 from kb_build.flow.values.types import (
     BOOL,
-    FLOAT,
     FROM_VERSION,
-    INT,
     NONE,
-    PASSED,
     STR,
     UNKNOWN,
     Builtin,
     ClassObject,
     Collection,
-    FromProperty,
     Instance,
     LocalFunction,
     Mapping,
@@ -39,19 +42,13 @@ from kb_build.flow.values.types import (
     join,
     literal,
     literal_text,
-    members,
     union,
     without_none,
 )
-from kb_build.symbols.api_names import TYPES as T
-from kb_build.symbols.paths import argument_of, plain_path
-from kb_build.symbols.unlisted import FEWEST_VALUES, MORE_VALUES, NAMED_IN_FILES, STAND_INS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
-    from collections.abc import Sequence as Rows
+    from collections.abc import Callable
 
-    from kb_build.flow.values.types import ResolutionKind
 
 _ERRORS = frozenset(
     name
@@ -66,25 +63,13 @@ _BUILTINS = _ERRORS | frozenset(
     ).split()
 )
 _CLASSES: dict[type, str] = {bool: "bool", int: "int", float: "float", str: "str", bytes: "bytes"}
-_MATH = frozenset(
-    {"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion", "mathutils.Matrix"}
-)
-_VECTOR = "mathutils.Vector"
-_SEQUENCE = "a sequence"  # of Python's, or of numbers that a property holds: mathutils computes with neither
 _SIGNS: dict[type[ast.operator], str] = {
     ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.MatMult: "@", ast.Div: "/",
 }  # fmt: skip
-_NUMBERS = frozenset({"bool", "int", "float"})
 _DEEPEST_ITEMS = 4  # dictionaries around one whose items are kept: what holds them, does so twice
-_LONGEST_LITERAL = 64
-CARRYING = (ast.Name, ast.Subscript, ast.Attribute)  # what may hold a text that is written elsewhere
-_COMPARISONS: dict[type[ast.cmpop], Callable[[list[int], list[int]], bool]] = {
-    ast.Lt: op.lt, ast.LtE: op.le, ast.Gt: op.gt, ast.GtE: op.ge, ast.Eq: op.eq, ast.NotEq: op.ne,
-}  # fmt: skip
-_MINOR = 2  # numbers of a version that tell what its API is
 
 
-class Expressions(Members):
+class Expressions(GivenValues):
     """Evaluates expressions."""
 
     def evaluate(self, node: ast.expr) -> Type:
@@ -198,7 +183,7 @@ class Expressions(Members):
         doubted = self.here.scope.state.doubted
         if doubted is not NO_DOUBTS and isinstance(value, str) and doubted.has_member(value):
             self.here.file.doubted.add(node)
-        if isinstance(value, (bytes, complex)) or (isinstance(value, str) and len(value) > _LONGEST_LITERAL):
+        if isinstance(value, (bytes, complex)) or (isinstance(value, str) and len(value) > LONGEST_LITERAL):
             return Plain(kind)
         return Plain(kind, value) if isinstance(value, (str, int, float)) else UNKNOWN
 
@@ -215,7 +200,7 @@ class Expressions(Members):
                 items.append(self.iterated(self.evaluate(item.value)))
             else:
                 items.append(self.evaluate(item))
-        if starred or len(items) > _LONGEST_LITERAL:
+        if starred or len(items) > LONGEST_LITERAL:
             return Sequence("list", union(items))
         if isinstance(node, ast.List):
             return Tuple(tuple(items)) if items else Sequence("list", UNKNOWN, is_empty=True)
@@ -237,7 +222,7 @@ class Expressions(Members):
             key_type = self.evaluate(key)
             keys.append(key_type)
             values.append(value_type)
-            if (text := literal_text(key_type)) is not None and len(items) < _LONGEST_LITERAL:
+            if (text := literal_text(key_type)) is not None and len(items) < LONGEST_LITERAL:
                 items.append((text, value_type))
         self.here.dictionaries -= 1
         if len(items) < len(values) or self.here.dictionaries > _DEEPEST_ITEMS:
@@ -261,9 +246,9 @@ class Expressions(Members):
         operator = node.op
         sign = _SIGNS.get(type(operator), "")
         if not sign or not (is_math(left) or is_math(right)):
-            return _operation(left, right, operator)
+            return operation_type(left, right, operator)
         self.here.resolutions.pop(node, None)
-        pair = _operand(left), _operand(right)
+        pair = math_operand(left), math_operand(right)
         taken = COMPUTED if isinstance(node, ast.BinOp) else COMPUTED_IN_PLACE
         if all(pair) and pair not in taken[sign]:
             sure = all(kind.sure for kind in (left, right) if isinstance(kind, Instance))
@@ -274,10 +259,10 @@ class Expressions(Members):
                 operator = ast.MatMult()  # which is meant
             elif sign in PRODUCTS:  # a vector of the same numbers is meant
                 left, right = (
-                    Instance(_VECTOR) if each == _SEQUENCE else kind
+                    Instance(VECTOR) if each == SEQUENCE else kind
                     for each, kind in zip(pair, (left, right), strict=True)
                 )
-        return _operation(left, right, operator)
+        return operation_type(left, right, operator)
 
     def _unary(self, node: ast.UnaryOp) -> Type:
         operand = self.evaluate(node.operand)
@@ -310,13 +295,13 @@ class Expressions(Members):
     def _decided_here(self, left: Type, operator: ast.cmpop, right: Type, right_node: ast.expr) -> Type:
         """The value of a comparison, where this Blender's version or what it has decides it."""
         if isinstance(left, Tuple) and isinstance(right, Tuple):
-            return _compared(left.items, right.items, operator)
+            return comparison(left.items, right.items, operator)
         if (
             isinstance(left, Plain)
             and isinstance(right, Plain)
             and FROM_VERSION in (left.source, right.source)
         ):
-            return _compared((left,), (right,), operator)
+            return comparison((left,), (right,), operator)
         text = literal_text(left)
         if text is None or not isinstance(operator, (ast.In, ast.NotIn)):
             return BOOL
@@ -456,126 +441,6 @@ class Expressions(Members):
     def _call(self, node: ast.Call) -> Type:
         return self.call(self.evaluate(node.func), node)
 
-    # Values of enumerations.
-
-    def check_value(self, kind: Type, node: ast.expr, use: ResolutionKind = "value") -> None:
-        """Records literals that are assigned to a value of an enumeration, or ``compared`` with it."""
-        source = self.source_of(kind)
-        if not source:
-            return
-        # Those that were not reached are of a branch for other versions.
-        for constant in filter(self.here.types.__contains__, self._given(node, source)):
-            self.resolve_value(constant, constant.value, source, use=use)
-        if use == "value" and isinstance(node, CARRYING):
-            self.check_carried(node, source)
-
-    def _given(self, node: ast.expr, sources: tuple[str, ...]) -> Iterator[ast.Constant]:
-        """The text literals that an expression gives to enumerations, but for those that it gives to another Blender's:
-        ``"A" if "A" in listed else "B"``, where this one's have ``A``.
-        """
-        if not isinstance(node, ast.IfExp):
-            yield from constants(node)
-            return
-        for holds, part in ((True, node.body), (False, node.orelse)):
-            if not self.is_listed_here(without(node.test, holds=holds).unlisted, sources):
-                yield from self._given(part, sources)
-
-    def is_listed_here(self, texts: frozenset[str], paths: Iterable[str]) -> bool:
-        """Whether this Blender's enumerations have one of some texts."""
-        return bool(texts) and any(not texts.isdisjoint(self.api.values_of(path)) for path in paths)
-
-    def check_carried(self, node: ast.expr, sources: tuple[str, ...]) -> None:
-        """Records a text that a name, an item or an attribute holds, where the enumeration it is given to lacks it."""
-        text = self.carried_text(node)
-        if text is not None:
-            self.resolve_value(node, text, sources, only_lacking=True)
-
-    def carried_text(self, node: ast.expr) -> str | None:
-        """The text that a name, an item or an attribute surely holds, though it is written elsewhere."""
-        kind = self.here.types.get(node)
-        if not isinstance(kind, Plain) or not (kind.source is None or kind.source is FROM_VERSION):
-            return None
-        text = literal_text(kind)
-        return text if text is not None and self.comes_surely(text) else None
-
-    def check_possible(self, owner: Type, name: str, paths: list[str], node: ast.expr) -> None:
-        """Records literals given to a property that only classes below the owner's have, enumerations all of them."""
-        if any(registered in {name, ANY} for _, registered in self.registered):
-            return
-        if any(
-            not isinstance(kind, Instance) or self.is_open(kind.cls) or kind.cls in DERIVED_BY_SCRIPTS
-            for kind in members(owner)
-            if kind is not NONE
-        ):
-            return
-        symbols = [self.api.symbols.symbol(path) for path in paths]
-        if all(
-            symbol and symbol.type == "enum" and len(symbol.enum_items) >= FEWEST_VALUES for symbol in symbols
-        ):
-            for constant in filter(self.here.types.__contains__, constants(node)):
-                self.resolve_value(constant, constant.value, tuple(paths))
-
-    @staticmethod
-    def source_of(kind: Type) -> tuple[str, ...]:
-        """The enumerations that a value was read from."""
-        found: list[str] = []
-        for member in members(kind):
-            plain = member.element if isinstance(member, Sequence) else member
-            source = plain.source if isinstance(plain, Plain) else None
-            if isinstance(source, FromProperty):
-                found.append(source.path)
-            elif source is not PASSED and plain is not NONE:
-                return ()
-        return tuple(found)
-
-    def resolve_value(
-        self,
-        node: ast.expr,
-        value: object,
-        sources: tuple[str, ...],
-        *,
-        use: ResolutionKind = "value",
-        only_lacking: bool = False,
-    ) -> None:
-        """Records a text as one of the values of properties, or of parameters, ``function(parameter)``."""
-        if not isinstance(value, str):
-            return
-        having: list[str] = []
-        lacking: list[str] = []
-        unsure = False
-        for source in sources:
-            symbol, argument = self.api.symbols.symbol(plain_path(source)), argument_of(source)
-            if symbol is None:
-                continue
-            items = symbol.enum_items
-            computed = symbol.enum_computed or source in NAMED_IN_FILES
-            if argument:
-                found = symbol.parameter(argument)
-                items, computed = (found.enum_items, found.is_open) if found else ((), False)
-            is_listed = any(item.identifier == value for item in items) or value in MORE_VALUES.get(
-                source, ()
-            )
-            are_classes = bool(items) and all(self.api.is_class(T + item.identifier) for item in items)
-            # Of classes, those of add-ons are taken as well.
-            is_listed = is_listed or (are_classes and not self.api.is_class(T + value))
-            # A function's only value is meant, unless it stands in for others.
-            is_judged = len(items) >= FEWEST_VALUES or (
-                bool(argument)
-                and symbol.kind == "function"
-                and not STAND_INS.issuperset(item.identifier for item in items)
-            )
-            if is_listed or not is_judged:
-                having.append(source)
-            elif are_classes or not computed:
-                lacking.append(source)
-            else:
-                unsure = True
-        if only_lacking:
-            self.here.resolutions.pop(node, None)
-        if (having and not only_lacking) or (lacking and not having and not unsure):
-            is_for_another = self.is_listed_here(self.here.scope.state.doubted.unlisted, lacking)
-            self.resolve(node, use, value, having, lacking, guarded=is_for_another)
-
     _evaluators: ClassVar[dict[type, Callable[..., Type]]] = {
         ast.Name: _name,
         ast.Attribute: _attribute,
@@ -605,91 +470,9 @@ class Expressions(Members):
     }
 
 
-def constants(node: ast.expr) -> list[ast.Constant]:
-    """The text literals in a literal or a display of literals."""
-    if isinstance(node, ast.Constant):
-        return [node]
-    if isinstance(node, (ast.Set, ast.Tuple, ast.List)):
-        return [item for item in node.elts if isinstance(item, ast.Constant)]
-    if isinstance(node, ast.IfExp):
-        return [*constants(node.body), *constants(node.orelse)]
-    return []
-
-
 def is_decided(kind: Type) -> bool:
     """Whether a truth value is decided by the Blender that the script is read for."""
     return isinstance(kind, Plain) and kind.source is FROM_VERSION and isinstance(kind.value, bool)
-
-
-def _compared(left: Rows[Type], right: Rows[Type], operator: ast.cmpop) -> Type:
-    """The comparison of two rows of numbers: how scripts ask for Blender's version."""
-    first = [literal(kind) for kind in left]
-    second = [literal(kind) for kind in right]
-    if not all(isinstance(value, int) for value in (*first, *second)):
-        return BOOL
-    ours, theirs = [int(v) for v in first if v is not None], [int(v) for v in second if v is not None]
-    compare = _COMPARISONS.get(type(operator))
-    if compare is None or (isinstance(operator, (ast.Eq, ast.NotEq)) and len(ours) > _MINOR):
-        return BOOL
-    return Plain("bool", compare(ours, theirs), FROM_VERSION)
-
-
-def is_math(kind: Type) -> bool:
-    """Whether a type is one of mathutils' values that can be multiplied."""
-    return isinstance(kind, Instance) and kind.cls in _MATH
-
-
-def _operand(kind: Type) -> str:
-    """What a value is to mathutils: a class, ``number``, or what it never computes with; empty if it may be any."""
-    if isinstance(kind, Plain):
-        return "number" if kind.kind in _NUMBERS else kind.kind
-    if isinstance(kind, Tuple) or (isinstance(kind, Instance) and kind.cls == ARRAY):
-        return _SEQUENCE
-    return kind.cls if isinstance(kind, Instance) and kind.cls in _MATH else ""
-
-
-def _operation(left: Type, right: Type, operator: ast.operator) -> Type:  # noqa: PLR0911, PLR0912 - one return a rule
-    if isinstance(left, Union) or isinstance(right, Union):
-        return union(_operation(a, b, operator) for a in members(left)[:3] for b in members(right)[:3])
-    if isinstance(left, Plain) and left.kind == "str":
-        return STR
-    if isinstance(left, Instance) and left.cls in _MATH:
-        if isinstance(right, Instance) and right.cls in _MATH:
-            if not isinstance(operator, ast.MatMult):
-                return left
-            if left.cls == _VECTOR:
-                return FLOAT if right.cls == _VECTOR else left
-            return right  # which a matrix or a rotation turns
-        return (
-            Instance(left.cls) if right is not UNKNOWN or not isinstance(operator, ast.MatMult) else UNKNOWN
-        )
-    if isinstance(right, Instance) and right.cls in _MATH and isinstance(left, Plain):
-        return right
-    if isinstance(left, Plain) and isinstance(right, Plain):
-        if not {left.kind, right.kind} <= _NUMBERS:
-            return STR if right.kind == "str" and isinstance(operator, ast.Mult) else UNKNOWN
-        if isinstance(operator, ast.Div):
-            return FLOAT
-        if isinstance(operator, ast.Pow) and FLOAT.kind not in {left.kind, right.kind}:
-            exponent = literal(right)
-            return INT if isinstance(exponent, int) and exponent >= 0 else UNKNOWN
-        if isinstance(operator, (ast.BitAnd, ast.BitOr, ast.BitXor)) and left.kind == right.kind:
-            return Plain(left.kind)
-        return FLOAT if "float" in {left.kind, right.kind} else INT
-    if isinstance(operator, ast.Add):
-        if isinstance(left, Tuple) and isinstance(right, Tuple):
-            return Tuple((*left.items, *right.items)) if len(left.items) < _LONGEST_LITERAL else UNKNOWN
-        if isinstance(left, (Sequence, Tuple)) and isinstance(right, (Sequence, Tuple)):
-            return Sequence("list", join(_element(left), _element(right)))
-    if isinstance(operator, ast.Mult) and isinstance(left, (Sequence, Tuple)):
-        return Sequence("list", _element(left))
-    if isinstance(operator, (ast.BitOr, ast.BitAnd, ast.Sub)) and isinstance(left, Sequence):
-        return left
-    return UNKNOWN
-
-
-def _element(kind: Sequence | Tuple) -> Type:
-    return kind.element if isinstance(kind, Sequence) else union(kind.items)
 
 
 _KINDS: dict[type, str] = {ast.ListComp: "list", ast.SetComp: "set", ast.GeneratorExp: "iterator"}

@@ -7,8 +7,8 @@ import ast
 from kb_build.flow.blender.api import ARRAY
 from kb_build.flow.blender.facts import AREA, AREA_TYPES, DISCRIMINANTS, SPACE
 from kb_build.flow.evaluation.annotations import Annotations
-from kb_build.flow.evaluation.expressions import is_math
 from kb_build.flow.evaluation.guards import Guards
+from kb_build.flow.evaluation.operations import is_math
 from kb_build.flow.state.scopes import chain_text, item_text
 from kb_build.flow.values.types import (
     NONE,
