@@ -74,7 +74,9 @@ class PreparedStart(BaseModel):
 def prepare_start(
     task: BenchTask, place: TaskFolder, rendering: EditRenderSettings, tell: Tell
 ) -> tuple[PreparedStart, float | None]:
-    """Makes the start scene if it is missing. Returns it, and the PL of its render against the set's own."""
+    """Makes the start scene if it is missing. Returns it, and the PL of its render against the set's own, if there is
+    one. Raises TaskFailed.
+    """
     if place.started.is_file():
         started = read(place.started, PreparedStart)
     else:

@@ -69,7 +69,7 @@ class RendersFolder:
         return {"folder": str(self.root)}
 
     def make(self, task: BenchTask, place: TaskFolder, tell: Tell) -> EditOutput:
-        """Copies the rounds, in natural order of their names."""
+        """Copies the rounds, in natural order of their names. Raises TaskFailed."""
         tell("copying renders")
         folder = self.root / task.level / task.name
         found = list(_rounds(folder))

@@ -107,7 +107,7 @@ def roots(runs: Path) -> Iterator[Path]:
 
 
 def new_run(runs: Path) -> RunFolder:
-    """A new folder below ``runs``, named after the time."""
+    """A new folder below ``runs``, named after the time. Raises Refusal."""
     for root in roots(runs):
         try:
             root.mkdir(parents=True)

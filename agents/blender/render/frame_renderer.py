@@ -111,7 +111,9 @@ class FrameRenderer:
         return self._render(frame, samples, target)
 
     def make_video(self, frames: Sequence[Path], target: Path) -> VideoFacts:
-        """Makes ``target`` (MP4) of images, one a frame; returns what is read back from it."""
+        """Makes ``target`` (MP4) of images, one a frame; returns what is read back from it. Raises Refusal where it has
+        another length or size than asked for.
+        """
         self._what, self._pid = "the video", None  # any Blender can make it
         workspace = self._blender.folder.workspace
         video = f".film-{secrets.token_hex(6)}.mp4"

@@ -100,7 +100,7 @@ class Journal:
         self.append_row(event.as_row())
 
     def append_row(self, row: Mapping[str, Any]) -> None:
-        """As ``append``, for an event in the form that it has on the disk."""
+        """As ``append``, for an event in the form that it has on the disk. Raises RunError."""
         with self._lock:
             stamp = datetime.now(UTC).isoformat(timespec="milliseconds")
             line = json.dumps(

@@ -93,7 +93,9 @@ class Practice:
     @cached_property
     def _pages(self) -> dict[str, frozenset[str]]:
         """Symbol → the pages that explain it, of those that something is known of."""
-        paths = {path for advice in ADVICE for path in (advice.explained, advice.chapters_of) if path}
+        paths = {
+            path for advice in self._of_version for path in (advice.explained, advice.chapters_of) if path
+        }
         return {
             path: frozenset(target.partition("#")[0] for target in self._reader.manual.manual_links(path))
             for path in (*paths, NODES_MODIFIER)
