@@ -34,8 +34,8 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.paths import item_of
 from kb_build.symbols.records import NODE_TYPE, READ_ONLY
 from kb_check.findings import Finding, Fix
+from kb_check.names.lacking import lacking_finding
 from kb_check.rule import Rule
-from kb_check.rules.lacking import lacking_finding
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:

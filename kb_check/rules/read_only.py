@@ -28,8 +28,8 @@ from kb_build.symbols.api_names import HANDLERS, TYPES
 from kb_build.symbols.flags import freed_by, is_locked
 from kb_build.symbols.records import FREE_ON, READ_ONLY
 from kb_check.findings import Edit, Finding, Fix
+from kb_check.names.lacking import data_class_that_had, lacking_finding
 from kb_check.rule import Rule
-from kb_check.rules.lacking import data_class_that_had, lacking_finding
 from kb_check.running.raised import LACKS
 from kb_check.scene.settings_before import set_before
 from kb_check.syntax.bindings import alias

@@ -36,9 +36,9 @@ from kb_build.symbols.records import SCALAR_TYPES
 from kb_check.calls.resolved import callee_path, member_path
 from kb_check.calls.sites import nothing_from, other_way
 from kb_check.findings import Finding, Fix
+from kb_check.names.lacking import data_class_that_had, lacking_finding
 from kb_check.nodes.shown_sockets import socket_classes
 from kb_check.rule import Rule
-from kb_check.rules.lacking import data_class_that_had, lacking_finding
 from kb_check.running.raised import LACKS
 from kb_check.running.tried import is_tried
 from kb_check.syntax.annotated import ONE_IS_WRONG, annotated

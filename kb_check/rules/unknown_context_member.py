@@ -14,8 +14,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import CONTEXT
+from kb_check.names.lacking import lacking_finding
 from kb_check.rule import Rule
-from kb_check.rules.lacking import lacking_finding
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.values.types import UNKNOWN, Function, members
 from kb_build.symbols.paths import argument_of
+from kb_check.names.lacking import lacking_finding
+from kb_check.names.renaming import may_take
 from kb_check.rule import Rule
-from kb_check.rules.lacking import lacking_finding
-from kb_check.rules.renaming import may_take
 from kb_check.values.given import assigned
 
 if TYPE_CHECKING:

@@ -21,8 +21,8 @@ from typing import TYPE_CHECKING
 from kb_build.flow.blender.facts import LOST_MODULES, UNLOADED
 from kb_check.calls.resolved import member_path
 from kb_check.findings import Finding
+from kb_check.names.lacking import lacking_finding
 from kb_check.rule import Rule
-from kb_check.rules.lacking import lacking_finding
 from kb_check.running.out_of_sight import knows_all
 from kb_check.running.tried import is_tried
 

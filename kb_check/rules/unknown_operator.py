@@ -17,8 +17,8 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import OPERATORS
+from kb_check.names.lacking import lacking_finding
 from kb_check.rule import Rule
-from kb_check.rules.lacking import lacking_finding
 from kb_check.syntax.words import members_taken
 
 if TYPE_CHECKING:

@@ -37,11 +37,11 @@ from kb_build.symbols.api_names import SIDES
 from kb_build.symbols.lines import subscripts_text
 from kb_build.symbols.records import NEVER_BY_IDENTIFIER, WHEN_PAIRED
 from kb_check.findings import Finding
+from kb_check.names.lacking import lacking_finding
 from kb_check.nodes.group_inputs import input_now
 from kb_check.nodes.own_sockets import lacking_own
 from kb_check.nodes.socket_modes import is_internal
 from kb_check.rule import Rule
-from kb_check.rules.lacking import lacking_finding
 from kb_check.running.asked_for_none import is_ready_for_none
 from kb_check.running.raised import LACKS_KEY
 from kb_serve.recognise.chains.subscripts import NODES_MODIFIER

@@ -28,9 +28,9 @@ from kb_build.symbols.flags import NODE_FAMILIES, never_taken
 from kb_build.symbols.paths import argument_of, last_name, plain_path, split_path
 from kb_check.calls.sites import calls_not_ready_for
 from kb_check.findings import Finding
+from kb_check.names.lacking import lacking_finding
 from kb_check.nodes.trees import is_refused_in, tree_of
 from kb_check.rule import Rule
-from kb_check.rules.lacking import lacking_finding
 from kb_check.running.out_of_sight import knows_all
 from kb_check.running.raised import REFUSES, REFUSES_ENUM
 from kb_check.running.tried import is_tried

@@ -12,8 +12,8 @@ from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.object_data import OBJECT_DATA
 from kb_check.findings import Finding
 from kb_check.names.former_values import new_value
+from kb_check.names.renaming import renaming
 from kb_check.registered.foreign_addons import may_register
-from kb_check.rules.renaming import renaming
 from kb_check.script import REGISTERED
 
 if TYPE_CHECKING:
