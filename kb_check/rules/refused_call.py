@@ -30,22 +30,21 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.values.types import UNKNOWN, ClassObject, Instance, LocalClass, members
-from kb_build.symbols.api_names import NODE, OBJECT, STRUCT
+from kb_build.symbols.api_names import NODE, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.lines import with_article
-from kb_build.symbols.object_data import OBJECT_DATA
 from kb_build.symbols.paths import last_name
 from kb_build.symbols.records import PAIRS
 from kb_check.calls.repeated import follows
 from kb_check.calls.resolved import callee_path
-from kb_check.calls.sites import CallSite, calls, calls_by_node
+from kb_check.calls.sites import CallSite, calls
 from kb_check.findings import Edit, Finding, Fix, Span
-from kb_check.nodes.trees import tree_of
 from kb_check.registered.classes import own_classes, plain_classes
 from kb_check.registered.order import registrations
 from kb_check.rule import Rule
 from kb_check.running.tried import is_tried
-from kb_check.scene.made_here import LINKS_NEW, OBJECTS_NEW, makers
+from kb_check.scene.made_here import LINKS_NEW, makers
+from kb_check.scene.refusing_kind import refusing_kind
 from kb_check.scene.removed import OUTSIDE_MAIN
 from kb_check.script import once_per_script
 from kb_check.syntax.bindings import bindings, once_bound
@@ -58,9 +57,6 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _WITH_PROPERTIES = (T, "mathutils.", "bmesh.types.")
-_LIGHT = "bpy.types.Light"
-# Until Blender 4.2, which has modifiers of their own for them, of objects of type GPENCIL.
-_GREASE_PENCIL, _FORMER_MODIFIERS = "GreasePencil", f"{T}GpencilModifier"
 # Modules whose classes are written in C and have a signature if, and only if, they can be called.
 _SIGNED = frozenset({"bmesh.types", "gpu.types", "idprop.types", "imbuf.types"})
 _REGISTERING = frozenset({"bpy.utils.register_class", "bpy.utils.unregister_class"})
@@ -102,7 +98,7 @@ def _check(script: Script) -> Iterator[Finding]:
                     names = " and ".join(f"`{name}`" for name in lacking)
                     yield _finding(script, call, refusal, f"without {names}")
             elif refusal.by:
-                if kind := _refusing(script, owner, refusal):
+                if kind := refusing_kind(script, owner, refusal):
                     word = "to" if refusal.values else "by"
                     yield _finding(script, call, refusal, f"{word} {with_article(kind)}")
             elif refusal.values and refusal.message:
@@ -324,77 +320,6 @@ def _is_written_out(script: Script, call: CallSite) -> bool:
     return all(
         isinstance(given, ast.Constant) or number(script, given) is not None for _, given in call.arguments()
     )
-
-
-def _refusing(script: Script, owner: ast.expr, refusal: Refusal) -> str:
-    """What something is that refuses a call by what it is; empty where that is not known."""
-    thing = owner.value if isinstance(owner, ast.Attribute) else owner
-    labels = set(_labels(script, thing))
-    refusing = labels & set(refusal.by)
-    return next(iter(refusing)) if refusing and not labels & set(refusal.taken_by) else ""
-
-
-def _labels(script: Script, thing: ast.expr) -> Iterator[str]:
-    """What a thing is called as something that was tried: ``bezier spline``, ``LIGHT object``."""
-    kind = script.type_of(thing)
-    symbol = script.api.symbols.symbol(kind.cls) if isinstance(kind, Instance) else None
-    if symbol is None or not isinstance(kind, Instance):
-        return
-    if made_as := _made_as(script, thing):
-        yield f"{made_as} {symbol.label.lower()}"
-    tree = script.api.symbols.symbol(f"{T}{tree_of(script, thing)}")
-    if tree is not None:
-        yield f"{symbol.label.lower()} in a {tree.label.lower()}"
-    if kind.sure:
-        yield symbol.label.lower()
-    data = dict(kind.traits).get("data") if kind.cls == OBJECT else None
-    if kind.cls == OBJECT and _has_no_data(script, thing):
-        yield "EMPTY object"
-    elif isinstance(data, Instance) and data.sure:
-        # A light is of a class for its type; curves of several classes are of several types.
-        cls = _LIGHT if script.api.descends(data.cls, _LIGHT) else data.cls
-        yield f"{_type_of_object(script, last_name(cls))} object"
-
-
-def _type_of_object(script: Script, data: str) -> str:
-    """The type of an object whose data is of a class."""
-    if data == _GREASE_PENCIL and not script.api.is_class(_FORMER_MODIFIERS):
-        return data.upper()
-    return next((kind for kind, cls in OBJECT_DATA.items() if cls == data), data.upper())
-
-
-def _has_no_data(script: Script, node: ast.expr) -> bool:
-    """Whether the one object that a name stands for was made without data."""
-    values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else []
-    match values:
-        case [ast.Call() as made] if callee_path(script, made) == OBJECTS_NEW:
-            given = [*made.args[1:2], *(word.value for word in made.keywords if word.arg == "object_data")]
-            return [ast.unparse(node) for node in given] == ["None"]
-        case _:
-            return False
-
-
-def _made_as(script: Script, node: ast.expr) -> str:
-    """The kind that something, or a name's one value, is made with, where nothing changes it; empty if not known."""
-    values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else [node]
-    made = values[0] if len(values) == 1 else None
-    if (
-        not isinstance(made, ast.Call)
-        or not callee_path(script, made).endswith(".new")
-        or _is_retyped(script)
-    ):
-        return ""
-    site = calls_by_node(script).get(made)
-    for parameter, given in site.arguments() if site else ():
-        if parameter.enum_items and isinstance(given, ast.Constant) and isinstance(given.value, str):
-            return given.value.lower()
-    return ""
-
-
-@once_per_script
-def _is_retyped(script: Script) -> bool:
-    """Whether a script gives something another type."""
-    return any(node.attr == "type" and isinstance(node.ctx, ast.Store) for node in script.all(ast.Attribute))
 
 
 def _finding(script: Script, call: CallSite, refusal: Refusal, why: str) -> Finding:
