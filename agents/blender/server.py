@@ -96,6 +96,104 @@ def instructions(known: Iterable[str], suite: Suite | None = None) -> str:
     )
 
 
+class _Requests:
+    """What clients ask for: tools of a suite, of a team and of the knowledge base, as far as a profile has them."""
+
+    def __init__(
+        self, sessions: BlenderSessions, docs: DocsClient, team: Team | None, profile: Profile, suite: Suite
+    ) -> None:
+        self._sessions = sessions
+        self._docs = docs
+        self._team = team
+        self._profile: Profile = profile
+        self._suite = suite
+        self._first = first_profiles(suite, team)
+        own = [tool.name for tool in suite.tools]
+        known = (*own, *(team.names if team is not None else ()), *docs_client.NAMES)
+        self.names = [name for name in known if is_within(self._first[name], profile)]
+
+    @asynccontextmanager
+    async def lifespan(self, _server: Server[None]) -> AsyncGenerator[None]:
+        """Runs the knowledge base beside the server, and closes the Blenders when it ends."""
+        try:
+            async with self._docs.running(), anyio.create_task_group() as tasks:
+                tasks.start_soon(self._sessions.watch)
+                try:
+                    yield
+                finally:
+                    tasks.cancel_scope.cancel()
+        finally:
+            with anyio.CancelScope(shield=True):
+                await anyio.to_thread.run_sync(self._sessions.close)
+
+    async def call_tool(self, context: _Context, params: types.CallToolRequestParams) -> types.CallToolResult:
+        """A tool's result. Raises MCPError for one that is not offered."""
+        name, team = params.name, self._team
+        if name not in self.names:
+            raise self._not_offered(name)
+        if name in docs_client.NAMES:
+            return await _look_up(self._docs, name, params.arguments)
+        if team is not None and name in team.names:
+            # A large plan takes seconds, in which other clients are not to wait.
+            return await anyio.to_thread.run_sync(team.use, name, params.arguments or {})
+        tool = self._suite.named(name)
+        if tool is None:
+            raise self._not_offered(name)
+        try:
+            session = await self._sessions.get(_client(context))
+        except BlenderError as error:
+            return _failed(str(error))
+        use = partial(session.use, tool, params.arguments, about=self._docs.about)
+        return await _call_with_progress(context, tool.name, use)
+
+    def _not_offered(self, name: str) -> MCPError:
+        text = _not_offered(name, self.names, self._profile, self._first.get(name))
+        return MCPError(types.INVALID_PARAMS, text)
+
+    async def _whole_entries(self) -> list[types.Tool]:
+        """The tools with their whole schemas; without the knowledge base's where it does not answer."""
+        team = self._team
+        entries = [*map(entry, self._suite.tools), *(team.tools() if team is not None else ())]
+        try:
+            with anyio.fail_after(_LIST_SECONDS):
+                entries += await self._docs.tools()
+        except (DocsGone, MCPError, TimeoutError) as error:
+            _LOG.error("%s cannot be listed: %s", " and ".join(docs_client.NAMES), error or "no reply")
+        return [tool for tool in entries if tool.name in self.names]
+
+    async def list_tools(self, _context: _Context, _page: _Listing) -> types.ListToolsResult:
+        """The tools that there are, as they are listed."""
+        entries = await self._whole_entries()
+        is_whole = self._profile == "all"
+        return types.ListToolsResult(tools=entries if is_whole else list(map(as_listed, entries)))
+
+    async def list_resources(self, _context: _Context, _page: _Listing) -> types.ListResourcesResult:
+        """The knowledge base's resources and the team's."""
+        own = self._team.resources() if self._team is not None else []
+        # The knowledge base's server has SCHEMAS too, which are here those of all tools.
+        return types.ListResourcesResult(resources=[*(await _or_empty(self._docs.resources)), *own])
+
+    async def list_templates(self, _context: _Context, _page: _Listing) -> types.ListResourceTemplatesResult:
+        """The knowledge base's templates."""
+        return types.ListResourceTemplatesResult(resource_templates=await _or_empty(self._docs.templates))
+
+    async def read_resource(
+        self, _context: _Context, params: types.ReadResourceRequestParams
+    ) -> types.ReadResourceResult:
+        """A resource's text. Raises MCPError where it cannot be read."""
+        uri = str(params.uri)
+        text = self._team.read(uri) if self._team is not None else None
+        if uri == SCHEMAS.uri:
+            text = schemas_text(await self._whole_entries())
+        if text is not None:
+            contents = types.TextResourceContents(uri=uri, text=text, mime_type="application/json")
+            return types.ReadResourceResult(contents=[contents])
+        try:
+            return await self._docs.read(uri)
+        except DocsGone as error:
+            raise MCPError(types.INTERNAL_ERROR, str(error)) from error
+
+
 def make_server(
     sessions: BlenderSessions,
     docs: DocsClient,
@@ -110,106 +208,21 @@ def make_server(
     of a Blender of the server's own.
     """
     served = suite or _own_suite(sessions, for_clients=team is not None)
-    own = [tool.name for tool in served.tools]
-    known = (*own, *(team.names if team is not None else ()), *docs_client.NAMES)
-    first = first_profiles(served, team)
-    names = [name for name in known if is_within(first[name], profile)]
-
-    @asynccontextmanager
-    async def lifespan(_server: Server[None]) -> AsyncGenerator[None]:
-        try:
-            async with docs.running(), anyio.create_task_group() as tasks:
-                tasks.start_soon(sessions.watch)
-                try:
-                    yield
-                finally:
-                    tasks.cancel_scope.cancel()
-        finally:
-            with anyio.CancelScope(shield=True):
-                await anyio.to_thread.run_sync(sessions.close)
-
-    async def call_tool(context: _Context, params: types.CallToolRequestParams) -> types.CallToolResult:
-        if params.name not in names:
-            raise MCPError(
-                types.INVALID_PARAMS, _not_offered(params.name, names, profile, first.get(params.name))
-            )
-        if params.name in docs_client.NAMES:
-            return await _look_up(docs, params.name, params.arguments)
-        if team is not None and params.name in team.names:
-            # A large plan takes seconds, in which other clients are not to wait.
-            return await anyio.to_thread.run_sync(team.use, params.name, params.arguments or {})
-        tool = served.named(params.name)
-        if tool is None:
-            raise MCPError(
-                types.INVALID_PARAMS, _not_offered(params.name, names, profile, first[params.name])
-            )
-        try:
-            session = await sessions.get(_client(context))
-        except BlenderError as error:
-            return _failed(str(error))
-        use = partial(session.use, tool, params.arguments, about=docs.about)
-        return await _call_with_progress(context, tool.name, use)
-
-    async def whole_entries() -> list[types.Tool]:
-        entries = [*map(entry, served.tools), *(team.tools() if team is not None else ())]
-        try:
-            with anyio.fail_after(_LIST_SECONDS):
-                entries += await docs.tools()
-        except (DocsGone, MCPError, TimeoutError) as error:
-            _LOG.error("%s cannot be listed: %s", " and ".join(docs_client.NAMES), error or "no reply")
-        return [tool for tool in entries if tool.name in names]
-
-    async def list_tools(_context: _Context, _page: _Listing) -> types.ListToolsResult:
-        entries = await whole_entries()
-        return types.ListToolsResult(tools=entries if profile == "all" else list(map(as_listed, entries)))
-
+    requests = _Requests(sessions, docs, team, profile, served)
     return Server(
         "simworlds-blender",
         version=own_version(),
         title="SimWorlds: live Blender",
-        instructions=instructions(names, served),
-        lifespan=lifespan,
+        instructions=instructions(requests.names, served),
+        lifespan=requests.lifespan,
         get_tool_input_schema=lambda name: entry(tool).input_schema if (tool := served.named(name)) else None,
-        on_list_tools=list_tools,
-        on_call_tool=call_tool,
-        **_reading(docs, team, whole_entries),
+        on_list_tools=requests.list_tools,
+        on_call_tool=requests.call_tool,
+        on_list_resources=requests.list_resources,
+        on_list_resource_templates=requests.list_templates,
+        on_read_resource=requests.read_resource,
         **(_prompting(team) if team is not None else {}),
     )
-
-
-def _reading(
-    docs: DocsClient, team: Team | None, whole_entries: Callable[[], Awaitable[list[types.Tool]]]
-) -> dict[str, Any]:
-    """The handlers of resources: the knowledge base's, the team's, and the whole schemas of the tools."""
-
-    async def list_resources(_context: _Context, _page: _Listing) -> types.ListResourcesResult:
-        own = team.resources() if team is not None else []
-        # The knowledge base's server has SCHEMAS too, which are here those of all tools.
-        return types.ListResourcesResult(resources=[*(await _or_empty(docs.resources)), *own])
-
-    async def list_templates(_context: _Context, _page: _Listing) -> types.ListResourceTemplatesResult:
-        return types.ListResourceTemplatesResult(resource_templates=await _or_empty(docs.templates))
-
-    async def read_resource(
-        _context: _Context, params: types.ReadResourceRequestParams
-    ) -> types.ReadResourceResult:
-        uri = str(params.uri)
-        text = team.read(uri) if team is not None else None
-        if uri == SCHEMAS.uri:
-            text = schemas_text(await whole_entries())
-        if text is not None:
-            contents = types.TextResourceContents(uri=uri, text=text, mime_type="application/json")
-            return types.ReadResourceResult(contents=[contents])
-        try:
-            return await docs.read(uri)
-        except DocsGone as error:
-            raise MCPError(types.INTERNAL_ERROR, str(error)) from error
-
-    return {
-        "on_list_resources": list_resources,
-        "on_list_resource_templates": list_templates,
-        "on_read_resource": read_resource,
-    }
 
 
 def _prompting(team: Team) -> dict[str, Any]:
