@@ -5,9 +5,7 @@ import bpy
 
 from ..instances.making import activate, add_object, choices, object_of, remove
 
-MOST_TYPES = 6
 MOST_CASES = 3
-ANY_OR_NONE = "any active object or none"
 
 
 def can_run(known):
