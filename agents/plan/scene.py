@@ -91,7 +91,7 @@ class ObjectGroup(PlanPart):
 
 
 class Joint(PlanPart):
-    """A joint of rigid bodies. ``axis`` is in the world; ``limits`` are in degrees, for a slider in metres."""
+    """A joint of rigid bodies as wholes. ``axis`` in the world; ``limits`` in degrees, of a slider in metres."""
 
     kind: Literal["hinge", "slider", "ball", "fixed"]
     part: Name

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import TYPE_CHECKING, Any, cast
 
 from agents.plan.faults import MOST_FAULTS, Fault
@@ -23,7 +24,10 @@ _WORDS = {
     " after validation": "",
     "a valid dictionary or instance of": "a JSON object:",
 }
-_NAME_RULE = "A name has 1 to 60 characters and no slash; write a part of an object as Object/Part."
+_NAME_RULE = "A name has 1 to 60 characters and no slash{part}."
+_WITHOUT_PARTS = "; a part of an object (Object/Part) cannot be given here"
+_A_PART = "Object/Part"
+_WITH_PARTS = "; write a part of an object as Object/Part"
 
 
 def faults_from(error: ValidationError, data: Any, model: type[BaseModel]) -> list[Fault]:
@@ -108,10 +112,11 @@ def _fault(path: list[int | str], details: ErrorDetails, schema: dict[str, Any])
         case "value_error":
             field, _, reason = message.removeprefix("Value error, ").partition(": ")
             return Fault(format_path([*path, field]), f"{reason[:1].upper()}{reason[1:]}.")
-        case "string_pattern_mismatch" | "string_too_short" | "string_too_long" if "pattern" in str(
+        case "string_pattern_mismatch" | "string_too_short" | "string_too_long" if pattern := _pattern(
             _at(schema, details["loc"])
         ):
-            return Fault(format_path(path), f"{_NAME_RULE}{_value(details)}")
+            part = _WITH_PARTS if re.search(pattern, _A_PART) else _WITHOUT_PARTS
+            return Fault(format_path(path), f"{_NAME_RULE.format(part=part)}{_value(details)}")
         case _:
             words = message
             for theirs, ours in _WORDS.items():
@@ -128,6 +133,11 @@ def _value(details: ErrorDetails) -> str:
 
 
 # Reading the schema
+
+
+def _pattern(field: dict[str, Any]) -> str:
+    """The pattern of a name; of one of several types too."""
+    return next((at["pattern"] for at in (field, *field.get("anyOf", ())) if "pattern" in at), "")
 
 
 def _fields(schema: dict[str, Any], path: Sequence[int | str]) -> Iterator[str]:

@@ -210,7 +210,19 @@ def changed(path: str, value: Any) -> dict[str, Any]:
         ("motion.phases[0].end", 0, "motion.phases[0].end", "Frame 0 is before the start frame, 1."),
         ("lighting", [], "lighting", "It should have at least 1 item, not 0."),
         ("objects[1].role", "wood", "objects[1].role", 'Given: "wood".'),
-        ("objects[1].name", "a/b", "objects[1].name", "no slash"),
+        (
+            "objects[1].name",
+            "a/b",
+            "objects[1].name",
+            "no slash; a part of an object (Object/Part) cannot be",
+        ),
+        (
+            "joints",
+            [{"kind": "hinge", "part": "Table/Leaf", "host": "Bowl"}],
+            "joints[0].part",
+            'a part of an object (Object/Part) cannot be given here. Given: "Table/Leaf".',
+        ),
+        ("relations[0].child", "a/b/c", "relations[0].child", "write a part of an object as Object/Part."),
     ],
 )
 def test_a_fault_is_named_by_its_field(path: str, value: Any, where: str, says: str) -> None:
