@@ -10,7 +10,8 @@ if TYPE_CHECKING:
 # Role of the plan → what to do about an actor that gets into a collider.
 _INTO_COLLIDER = {
     "rigid": "Give both a fitting collision shape, thicken the collider, simulate more substeps; if a joint swings or "
-    "twists it there, limit the joint's angle or way, or raise the body's angular_damping; then bake again.",
+    "twists it there, put the joint where the two turn about each other (the middle of a pin), limit its angle or way, "
+    "or raise the body's angular_damping; then bake again.",
     "soft": "Lower its mass and the stiffness of its springs together, raise the solver's least steps, and give the "
     "collider a thicker outer zone and few faces; then bake again.",
     "cloth": "Raise the cloth's quality and its collisions' quality, give the collider a thicker outer zone, and the "

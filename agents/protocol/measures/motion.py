@@ -92,13 +92,15 @@ class ContactFramesRequest(Request[ContactFramesMeasure], kind="touches", answer
 class PassageMeasure(Measure):
     """The largest depth of an object in a collider, and its frame; 0 where it stayed outside.
 
-    ``through``: it passed from one side to the other since the frame before.
+    ``through``: it passed from one side to the other since the frame before. ``pair``: the mesh and the collider's
+    mesh that got so deep.
     """
 
     depth: float
     through: bool = False
     frame: int | None = None
     at: Vector | None = None
+    pair: tuple[str, str] | None = None
 
 
 @dataclass(frozen=True)

@@ -105,7 +105,7 @@ class PassageFollower:
         self._seen = {}
         self._at_first = {}  # pair → how deep it is at the first frame: a hinge in its leaf, say, which others judge
         self._passed = {}
-        self._result = {"depth": 0.0, "through": False, "frame": None, "at": None}
+        self._result = {"depth": 0.0, "through": False, "frame": None, "at": None, "pair": None}
 
     def look(self, frame, graph, tracker):
         """Measures a frame."""
@@ -138,20 +138,21 @@ class PassageFollower:
         if is_first and deepest is not None and self._request["but_first"]:
             self._at_first[pair] = deepest[0]
         elif deepest is not None and deepest[0] > self._at_first.get(pair, 0.0) + beyond:
-            self._note(frame, other, deepest, through=False)
-        self._sweep(frame, pair, other, (before, now))
+            self._note(frame, (own, other), deepest, through=False)
+        self._sweep(frame, (own, other), (before, now))
 
-    def _sweep(self, frame, pair, other, ways):
+    def _sweep(self, frame, bodies, ways):
         """Counts the samples that changed sides since the frame before."""
+        own, other = bodies
         before, now = ways
-        passed = self._passed.setdefault(pair, set())
+        passed = self._passed.setdefault((own.name, other.name), set())
         behind = []
         for number, place in _line_hits(other, before, now, least=self._request["beyond"]):
             if self._is_through(other.solid, Vector(before[number]), Vector(now[number]), place):
                 passed.add(number)
                 behind.append(((Vector(now[number]) - place).length, now[number]))
         if behind and len(passed) >= _PASSED * len(now):
-            self._note(frame, other, max(behind, key=lambda hit: hit[0]), through=True)
+            self._note(frame, bodies, max(behind, key=lambda hit: hit[0]), through=True)
             passed.clear()
 
     def _is_through(self, solid, start, end, place):
@@ -167,11 +168,13 @@ class PassageFollower:
         is_thin = float((solid.high - solid.low).min()) <= 2 * beyond
         return is_thin or out is None or solid.nearest((place + out) / 2)[3] > beyond
 
-    def _note(self, frame, other, deepest, *, through):
+    def _note(self, frame, bodies, deepest, *, through):
+        own, other = bodies
         depth, place = deepest
         if depth > self._result["depth"]:
             at = other.to_world(numpy.array([place]))[0].tolist()
-            self._result.update(depth=depth, through=through, frame=frame, at=at)
+            pair = [own.name, other.name]
+            self._result.update(depth=depth, through=through, frame=frame, at=at, pair=pair)
 
     def result(self):
         """The result as data."""

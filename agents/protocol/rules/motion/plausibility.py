@@ -19,7 +19,7 @@ from agents.protocol.judging.phases import (
 )
 from agents.protocol.judging.sizes import contact_gap, smallest_dimension
 from agents.protocol.judging.solver_advice import into_collider
-from agents.protocol.measures.motion import ContactFramesRequest, PassageRequest
+from agents.protocol.measures.motion import ContactFramesRequest, PassageMeasure, PassageRequest
 from agents.protocol.measures.requests import Measures, Request, Unmeasured
 from agents.protocol.rule import Rule, RuleContext
 from agents.protocol.tolerances import CONTACT
@@ -319,14 +319,15 @@ def _tunnels(context: RuleContext, measures: Measures, actor: str) -> Iterator[F
             continue
         if passage.depth > request.beyond:
             depth = f"{passage.depth:.3f} m"
-            what = (
-                f"passes through {collider!r} within a frame and ends {depth} behind its surface."
+            what, into = _with_meshes(request, passage, actor, collider)
+            how = (
+                f"passes through {into} within a frame and ends {depth} behind its surface."
                 if passage.through
-                else f"gets {depth} deep into {collider!r}."
+                else f"gets {depth} deep into {into}."
             )
             yield T6.finding(
                 (actor, collider),
-                f"{actor!r} {what}",
+                f"{what} {how}",
                 fix=into_collider(context, actor)
                 or "Give both a fitting collision shape, make the collider thicker, or simulate more substeps; then "
                 "bake again.",
@@ -336,6 +337,18 @@ def _tunnels(context: RuleContext, measures: Measures, actor: str) -> Iterator[F
                 unit="m",
                 at=passage.at,
             )
+
+
+def _with_meshes(
+    request: PassageRequest, passage: PassageMeasure, actor: str, collider: str
+) -> tuple[str, str]:
+    """Actor and collider in words; of one that has several meshes, with that which it happens to."""
+    meshes = passage.pair or (None, None)
+    actor_words, collider_words = (
+        f"{name!r} ({mesh!r})" if mesh is not None and len(members) > 1 else repr(name)
+        for name, mesh, members in zip((actor, collider), meshes, (request.a, request.b), strict=True)
+    )
+    return actor_words, collider_words
 
 
 T6 = Rule(

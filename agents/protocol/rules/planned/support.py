@@ -149,13 +149,18 @@ def _unbalanced(
         return
     where = f"{_mm(-margin)} outside" if margin < 0 else f"only {_mm(margin)} inside"
     yield Violation(
-        f"{relation.child!r} tips over: its centre of mass is {where} its support area.",
+        f"{relation.child!r} tips over: its centre of mass is {where} its support area{_wanted(least)}.",
         margin,
         least,
         "m",
         centre,
         "Move it over its parents, widen its base, or turn it upright.",
     )
+
+
+def _wanted(margin: float) -> str:
+    """How far inside a centre of mass has to be, as the rest of a sentence; nothing for what stands on a line."""
+    return f", and should be at least {_mm(margin)} inside" if margin > 0 else ""
 
 
 # R6: leaning against

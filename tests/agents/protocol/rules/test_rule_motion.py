@@ -422,6 +422,22 @@ linear(bpy.data.objects["Shot root"])
     assert 0.98 <= (finding.measured or 0) <= 1.4
 
 
+def test_of_what_has_several_meshes_those_are_named_that_meet(session: LiveSession) -> None:
+    script = """
+scene.frame_start, scene.frame_end = 1, 30
+thing("Floor", box("Slab", (-9, -9, -1), (9, 9, 0)), box("Post", (-9, -9, 0), (-8, -8, 1)), system_name="ground")
+root = thing("Dumbbell", box("Low", (0, 0, 0.2), (1, 1, 1.2)), box("High", (0, 0, 3), (1, 1, 4)))
+key(root, 1, location=(0, 0, 0))
+key(root, 25, location=(0, 0, -0.5))
+"""
+    roles = {"Floor": "ground", "Dumbbell": "rigid"}
+    finding = the_finding(
+        judged(session, "T6", script, phase("Dumbbell", "translate", 1, 25), roles=roles, last=30)
+    )
+    assert finding.objects == ("Dumbbell", "Floor")
+    assert "'Dumbbell' ('Low') gets 0.300 m deep into 'Floor' ('Slab')." in finding.message
+
+
 def test_what_sinks_slowly_through_a_plane_is_in_it(session: LiveSession) -> None:
     script = """
 scene.frame_start, scene.frame_end = 1, 60

@@ -152,6 +152,7 @@ def test_the_centre_of_mass_must_be_inside_the_inset_hull(
     assert found.measured == pytest.approx(0.5 - (start + 0.3), abs=1e-4)
     assert found.tolerance == pytest.approx(0.05 * math.sqrt(0.2 * (0.5 - start)), abs=1e-4)
     assert "tips over" in found.message
+    assert f"should be at least {found.tolerance * 1000:.1f} mm inside" in found.message
 
 
 CHAIR = """
