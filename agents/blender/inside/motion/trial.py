@@ -13,6 +13,7 @@ from ..blend.named_objects import objects_named
 from ..geometry.solids import Solids
 from ..physics import caches, stepped_frames
 from ..physics.finite_check import Diverged
+from ..state.likely_mistakes import bodies_off_their_meshes
 from .actors import resolve, round_to
 from .followed import Followed
 from .solid_facts import solid_facts
@@ -58,6 +59,8 @@ def trial(arguments, report):
             f"changed since: {', '.join(stale)}."
         )
     notes = [f"Baked, so played as it is: {cache.label}." for cache in own if cache.baked]
+    if any(cache.kind == caches.RIGID_BODY for cache in own):
+        notes += bodies_off_their_meshes([obj for obj in scene.objects if obj.rigid_body is not None])
     with _stepping_fluids(own, arguments["folder"]):
         run = _Trial(scene, Followed(scene, actors, bodies, first, own), arguments, report)
         run.step()

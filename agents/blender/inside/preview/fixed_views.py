@@ -213,12 +213,18 @@ def _why_nothing_visible(subject, what, objects):
         return f"{what} has nothing to draw. Hidden in the viewport: {_listed(subject.hidden)}."
     if subject.empty:
         return f"{what} has nothing to draw. Without faces or strands: {_listed(subject.empty)}."
+    if subject.gasless:
+        return f"{what} has nothing to draw. {_without_gas().capitalize()}: {_listed(subject.gasless)}."
     objects = list(bpy.context.scene.objects if objects is None else objects)
     drawable = [obj.name for obj in objects if obj.type in DRAWABLE]
     if drawable:
         return f"{what} has nothing to draw. Not in the view layer: {_listed(drawable)}."
     kinds = sorted({obj.type for obj in objects})
     return f"{what} has no geometry: {'it holds only ' + ', '.join(kinds) if kinds else 'it is empty'}."
+
+
+def _without_gas():
+    return f"without gas at frame {bpy.context.scene.frame_current}"
 
 
 def note_missing(subject, notes):
@@ -229,6 +235,7 @@ def note_missing(subject, notes):
         (subject.hidden, "hidden in the viewport"),
         (subject.unrendered, "hidden from renders"),
         (subject.empty, "without faces or strands"),
+        (subject.gasless, _without_gas()),
     ):
         if names:
             notes.append(f"Not shown, {why}: {_listed(names)}.")

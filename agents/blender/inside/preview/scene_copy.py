@@ -65,7 +65,8 @@ def _is_particle(instance):
 
 class SceneCopy:
     """``pieces``, and the names of what is missing: ``broken`` (with why), ``hidden`` in the viewport, ``unrendered``,
-    ``empty``; ``left_out`` counts instances, of the objects ``templates``; ``gases``: the domains whose gas is drawn.
+    ``empty``; ``left_out`` counts instances, of the objects ``templates``; ``gases``: the domains whose gas is drawn,
+    ``gasless``: those that have none at this frame.
     ``studio`` owns all data-blocks."""
 
     def __init__(self, studio, graph, objects, *, unrendered=False):
@@ -73,11 +74,11 @@ class SceneCopy:
         self._studio, self._graph = studio, graph
         self._copies, self._surfaces, self._averages = {}, {}, {}
         self.pieces, self.broken, self.left_out, self.templates = [], {}, 0, set()
-        self.gases = set()
+        self.gases, gas_domains = set(), set()
         names = None if objects is None else {obj.name for obj in objects}
         layer = graph.view_layer
         rendered = None if unrendered else {obj.name for obj in rendered_objects(layer.layer_collection)}
-        met, not_rendered = self._copy_instances(names, rendered)
+        met, not_rendered = self._copy_instances(names, rendered, gas_domains)
         candidates = {
             obj.name
             for obj in (layer.objects if objects is None else objects)
@@ -86,15 +87,20 @@ class SceneCopy:
         self.unrendered = sorted(not_rendered)
         self.hidden = sorted(candidates - met)
         drawn = {piece.owner for piece in self.pieces}
-        self.empty = sorted((candidates & met) - drawn - set(self.broken) - _metaballs(layer))
+        undrawn = (candidates & met) - drawn - set(self.broken) - _metaballs(layer)
+        self.gasless = sorted(undrawn & gas_domains)
+        self.empty = sorted(undrawn - gas_domains)
 
     def copy_unevaluated(self, obj):
         """Copies an object that is hidden, and so not evaluated: without its modifiers."""
         data = self._studio.owned(bpy.data.meshes.new_from_object(obj))
         self._colour_and_add(obj.name, data, obj, obj.matrix_world.copy())
 
-    def _copy_instances(self, names, rendered):
-        """Copies the instances; returns the names of the visible objects, and of those that renders do not show."""
+    def _copy_instances(self, names, rendered, gas_domains):
+        """Copies the instances; returns the names of the visible objects, and of those that renders do not show.
+
+        ``gas_domains`` gets the names of the domains of gas among them.
+        """
         met, not_rendered, placed, count = set(), set(), set(), 0
         instances = self._graph.object_instances
         step = max(1, math.ceil(len(instances) / INSTANCES))
@@ -125,7 +131,10 @@ class SceneCopy:
                     continue
             else:
                 self._copy_particles_and_gas(obj, matrix)
-                if not instance.show_self or _gas_of(obj):
+                if _gas_of(obj):
+                    gas_domains.add(owner.name)
+                    continue
+                if not instance.show_self:
                     continue
             # Text, curves and metaballs come twice: as themselves, and as an instance of their mesh.
             is_made = instance.is_instance and obj.type == "MESH" and owner.type in _TO_MESH

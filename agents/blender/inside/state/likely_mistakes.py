@@ -46,14 +46,14 @@ def _invalid_setup(scene, objects):
         out = [obj for obj in bodies if obj.name_full not in inside]
         if out:
             yield f"Rigid bodies outside the rigid-body world's collection, so not simulated: {_names(out)}."
-    yield from _bodies_off_their_meshes(bodies)
+    yield from bodies_off_their_meshes(bodies)
     if scene.camera is None and any(obj.type == "CAMERA" for obj in objects):
         yield "The scene has cameras, but none is active (scene.camera)."
     if scene.frame_start > scene.frame_end:
         yield f"The frame range is empty: {scene.frame_start} to {scene.frame_end}."
 
 
-def _bodies_off_their_meshes(bodies):
+def bodies_off_their_meshes(bodies):
     """A body turns about its origin, and a primitive collision shape is centred on it, wherever the mesh is."""
     outside, off = [], []
     for obj in bodies[:_MOST_BODIES]:

@@ -254,6 +254,19 @@ def test_a_trial_says_how_deep_something_is_in_another(session: LiveSession) -> 
     assert "100.0 mm deep in 'Cube'" in found.text
 
 
+def test_a_trial_says_which_body_is_not_where_its_mesh_is(session: LiveSession) -> None:
+    raised = "from mathutils import Matrix\nfloor = bpy.data.objects['Cube']\n"
+    session.run(
+        f"{PARTS}\nbody()\nbpy.ops.mesh.primitive_cube_add(size=2, location=(12, 0, -1))\n{raised}"
+        "bpy.ops.rigidbody.object_add()\nfloor.rigid_body.type, floor.rigid_body.collision_shape = 'PASSIVE', 'BOX'"
+    )
+    remark = "Primitive collision shapes are centred on the origin"
+    assert remark not in session.use(TOOL, objects=["Brick"], frames=2, pictures=False).text
+    session.run(f"{raised}floor.data.transform(Matrix.Translation((0, 0, -.2)))")
+    found = session.use(TOOL, objects=["Brick"], frames=2, pictures=False)
+    assert f"{remark}; here that is not the middle of the mesh: BOX of 'Cube' by 0.2 m." in found.text
+
+
 def test_a_cage_in_its_own_body_is_not_deep_in_anything(session: LiveSession) -> None:
     session.run(
         f"{PARTS}\nbody()\nbpy.ops.mesh.primitive_cube_add(size=2, location=(12, 0, 2))\nskin = bpy.context.object\n"

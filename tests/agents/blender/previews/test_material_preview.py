@@ -220,6 +220,14 @@ def test_gas_is_said_to_be_drawn_without_its_shader(session: LiveSession) -> Non
     session.use(BAKE)
     told = "Drawn as blocks, without its shader: the gas of 'Air'"
     assert told in session.use(material_preview.TOOL, show="scene", width=64, frames=[4]).text
+    session.run(
+        "flow = bpy.data.objects['Fire'].modifiers['Fluid'].flow_settings\nflow.use_inflow = False\n"
+        "bpy.context.scene.frame_set(1)"
+    )
+    session.use(BAKE)
+    text = session.use(material_preview.TOOL, show="scene", width=64, frames=[1]).text
+    assert "Not shown, without gas at frame 1: 'Air'." in text
+    assert told not in text
     session.run("bpy.data.objects['Air'].modifiers.clear()")
     assert told not in session.use(material_preview.TOOL, show="scene", width=64).text
 
