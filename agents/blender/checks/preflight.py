@@ -72,10 +72,15 @@ class PreFlight:
 
     def remarks(self) -> list[str]:
         """The warnings, each in a line."""
-        return [
-            f"Warning, line {finding.line}: {_clipped(finding.message)}"
-            for finding in self.warnings[:_MOST_WARNINGS]
-        ]
+        return [f"Warning, line {finding.line}: {_clipped(finding.message)}" for finding in self._remarked]
+
+    def remarked_lines(self) -> list[int]:
+        """The lines of code that ``remarks`` speaks of."""
+        return [finding.line for finding in self._remarked]
+
+    @property
+    def _remarked(self) -> tuple[CodeFinding, ...]:
+        return self.warnings[:_MOST_WARNINGS]
 
     @property
     def data(self) -> list[dict[str, Any]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field
@@ -12,6 +13,8 @@ from simworlds.counting import counted
 from simworlds.sandbox.replies import Claim, Count, Text
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from agents.blender.files.checkpoints import Checkpoint
     from simworlds.sandbox.blender_process import WorkerReply
 
@@ -19,11 +22,13 @@ LONGEST_CODE = 400_000
 _LONGEST_PRINT = 8_000
 _LONGEST_TITLE = 40
 _BEFORE_IT_FAILS = "with on_error='restore' a call is undone when it fails"
+# With the line of code that Python shows below it.
+_DEPRECATION = r"^<blender_execute>:{line}: DeprecationWarning: .*\n?(?:^  .*\n?)?"
 _OF_CACHES = {
     "reset": "A reset simulation simulates again from its first frame, however far it had come.",
     "older than their settings": (
-        "The old bake is played, whatever the settings say. Bake again (blender_bake), or free it first (free=true) to "
-        "step or try the new settings."
+        "The old bake is played, whatever the settings say. Bake these again (blender_bake; name their objects, "
+        "or every simulation is baked anew), or free them first (free=true) to step or try the new settings."
     ),
 }
 
@@ -145,7 +150,8 @@ def describe(data: dict[str, Any], reply: WorkerReply[Any], checked: PreFlight) 
         parts.append(data["scene"])
     if data["value"] is not None:
         parts.append(f"Value: `{data['value']}`")
-    for name, text in (("Printed", reply.stdout), ("On stderr", reply.stderr)):
+    stderr = _without_told(reply.stderr, checked.remarked_lines())
+    for name, text in (("Printed", reply.stdout), ("On stderr", stderr)):
         if text.strip():
             parts.append(f"{name}:\n```\n{_shortened(text.rstrip())}\n```")
     if data["changed"]:
@@ -162,6 +168,13 @@ def describe(data: dict[str, Any], reply: WorkerReply[Any], checked: PreFlight) 
     if remarks := checked.remarks():
         parts.append("\n".join(remarks))
     return "\n\n".join(parts)
+
+
+def _without_told(stderr: str, lines: Iterable[int]) -> str:
+    """What was printed, but for deprecations at lines that a warning names: it says more of the same."""
+    for line in lines:
+        stderr = re.sub(_DEPRECATION.format(line=line), "", stderr, flags=re.MULTILINE)
+    return stderr
 
 
 def _shortened(text: str) -> str:

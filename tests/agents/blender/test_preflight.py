@@ -77,6 +77,16 @@ def test_an_error_is_told_with_its_fix_before_anything_ran(
     assert [finding["rule"] for finding in result.data["preflight"]] == ["unknown-attribute"]
 
 
+def test_a_deprecation_that_a_warning_tells_of_is_not_told_again(execute: Callable[..., Result]) -> None:
+    result = execute("import sys\nmaterial = bpy.data.materials.new('Dye')\nmaterial.use_nodes = True\n")
+    if "use_nodes" not in result.text:
+        pytest.skip("this Blender still needs it")
+    assert "DeprecationWarning" in result.data["stderr"]
+    assert result.text.count("line 3") == 1
+    assert "DeprecationWarning" not in result.text
+    assert "On stderr" not in result.text
+
+
 def test_code_is_run_unchecked_when_asked(execute: Callable[..., Result]) -> None:
     result = execute("bpy.context.scene.nonsense", preflight="off")
     assert result.data["error"]["type"] == "AttributeError"
