@@ -97,6 +97,10 @@ MATRIX_PRODUCT = re.compile(
 NO_WRITING = re.compile(
     r"Writing to ID classes in this context is not allowed(?:.*?error setting (?P<owner>\w+)\.(?P<name>\w+))?"
 )
+# Of an operator that is called there; older Blenders say "can't".
+NO_CALLING = re.compile(
+    r"operator \"(?P<path>bpy\.ops\.\w+\.\w+)\" error, can(?:not|'t) modify blend data in this state"
+)
 OF_CLASSES = "validating class"  # what Blender says of classes that it is given to register
 POSITIONAL = re.compile(r"\bargs execution context is supported")
 NOT_AN_OPERATOR = re.compile(r"BMeshOpsModule: operator \"(?P<name>\w+)\" doesn't exist")
@@ -160,6 +164,7 @@ _SIGNS = (
     "module named",
     "node of type",
     "not animatable",
+    "modify blend data",
     "multiplication",
     "no setter",
     "not found",
@@ -169,6 +174,12 @@ _SIGNS = (
     "required parameter",
     "sequences of dimension",
     "unknown operator",
+)
+
+# Of a function that is written in Python.
+OTHER_ARGUMENTS = re.compile(
+    r"(?<![\w.])(?:\w++\.)*+(?P<name>\w++)\(\) (?:missing \d+ required positional arguments?: '(?P<missing>\w++)'"
+    r"|takes (?:\d+|from \d+ to \d+) positional arguments? but \d+ (?:was|were) given)"
 )
 
 _OF_CLASS = re.compile(r"'(\w+)' object\b")

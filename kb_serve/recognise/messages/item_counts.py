@@ -23,7 +23,10 @@ _USUAL = {
     3: (f"{TYPES}Object.location", f"{TYPES}Light.color"),
     4: (f"{TYPES}NodeSocketColor.default_value", f"{TYPES}Material.diffuse_color"),
 }
-_COLOUR = "The value has another number of items than the property: a colour with alpha has 4, one without 3."
+_COLOUR = (
+    "The value has another number of items than the property: a colour with alpha has 4, one without 3; a place has 3, "
+    "but a point of a poly or NURBS spline 4, `(x, y, z, 1)`."
+)
 
 
 class ItemCounts:

@@ -28,6 +28,7 @@ from kb_serve.recognise.messages.nameless_messages import NamelessMessages
 from kb_serve.recognise.messages.node_types import NodeTypes
 from kb_serve.recognise.messages.none_before import NoneBefore
 from kb_serve.recognise.messages.operators import Operators
+from kb_serve.recognise.messages.own_functions import OwnFunctions
 from kb_serve.recognise.messages.paths_not_found import PathsNotFound
 from kb_serve.recognise.messages.python_types import PythonTypes
 from kb_serve.recognise.messages.refused_calls import RefusedCalls
@@ -79,6 +80,7 @@ class Messages:
             recognise_multiplications,
             Registration(reader).recognise,
             GivenValues(reader, absent).recognise,
+            OwnFunctions(reader).recognise,
         )
         # Of messages in words of their own.
         self._others: tuple[Callable[[str, Recognition], None], ...] = (

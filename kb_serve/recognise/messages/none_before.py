@@ -46,6 +46,7 @@ _NO_BAG = (
     "it, as the first keyframe does."
 )
 _OF_CONTEXT = frozenset({"bpy", "context", "C"})  # of which is told what it lacks where
+_IS_SET = "no __dict__ for setting new attributes"  # which tells that it was to be set
 _IS_NONE = "The object before `.{name}`{of} is None: it does not exist (yet), or was not found."
 
 
@@ -67,12 +68,14 @@ class NoneBefore:
         is_told = self._tell_of_bag(name, query, recognition) or self._tell_of_call(name, chains, recognition)
         if is_told or self._tell_read(name, chains, recognition):
             return
+        is_set = _IS_SET in query
         owners = {
             entry.owner.removeprefix(TYPES)
             for entry in self._reader.names.by_name(name)
             if entry.kind in {"property", "function"}
             and entry.owner.startswith(TYPES)
             and entry.group != "ui"
+            and not (is_set and self._is_flagged(entry, READ_ONLY))
         }
         gone = [] if owners else self._once(name)
         for removed in gone:
@@ -86,7 +89,7 @@ class NoneBefore:
             entry for entry in holders if set(terms(f"{entry.owner} {entry.name}")) <= around | {"type"}
         ]
         told = set(likely)  # of these is said what fills them
-        usual = None if likely or gone else self._absent.usual(name)
+        usual = None if likely or gone else self._usual(name, owners)
         if usual and self._absent.in_context(usual.owner):
             self._tell_absent(usual, recognition)
             return
@@ -97,7 +100,7 @@ class NoneBefore:
             likely = [entry for entry in holders if self._is_flagged(entry, FILLED_BY)]
             told = set(self._reader.usage.heaviest(likely)[:1])
         if not likely:
-            likely = self._empty_before(name)
+            likely = self._empty_before(name, owners)
             told = set(likely)
         if usual and not likely:
             self._tell_usual(usual, owners, recognition)
@@ -219,8 +222,14 @@ class NoneBefore:
             recognition.add(path, 0.86 - 0.01 * rank, "may be None")
         recognition.add(member.path, 0.81, "attribute of None")
 
-    def _empty_before(self, name: str) -> list[SymbolEntry]:
-        """The likeliest pointers that are None on new things, and lead to what has a member of that name, once filled.
+    def _usual(self, name: str, owners: set[str]) -> SymbolEntry | None:
+        """The member of that name which scripts use most, if it is one of some classes, and a thing may be absent."""
+        usual = self._absent.usual(name)
+        return usual if usual and usual.owner.removeprefix(TYPES) in owners else None
+
+    def _empty_before(self, name: str, owners: set[str]) -> list[SymbolEntry]:
+        """The likeliest pointers that are None on new things, and lead to what has a member of that name, once filled:
+        the member of one of some classes.
 
         Empty where that leads to too many classes. Without those to a class whose member scripts use far less than
         another's: then they say nothing.
@@ -231,7 +240,10 @@ class NoneBefore:
         having = {
             target: one.path
             for target, one in members.items()
-            if one and one.group != "ui" and self._empty_pointers(target)
+            if one
+            and one.group != "ui"
+            and one.owner.removeprefix(TYPES) in owners
+            and self._empty_pointers(target)
         }
         if not 0 < len(having) <= _MANY:
             return []

@@ -26,7 +26,11 @@ _READS_ONLY = (
     "Write in an operator's `execute()` (a button calls it), in a handler of `bpy.app.handlers`, or later, by "
     "`bpy.app.timers.register(function)`."
 )
-
+_CALLED_WHILE_READING = (
+    "No operator is called while Blender only reads or draws: in `draw()` and `poll()` of panels, menus and operators, "
+    "functions of nodes, and draw handlers. Call it in an operator's `execute()`, which a button calls, or later, by "
+    "`bpy.app.timers.register(function)`."
+)
 
 # Type in a message → what defines a property of it.
 _DEFINED = {
@@ -73,10 +77,7 @@ class Operators:
                 own = _DEFINED.get(match["wanted"], "bpy.props")  # an operator of the script's own
                 path = known_operator_of_class(match["operator"], self._reader) or own
                 recognition.add(path, 0.98, "error message")
-        if match := forms.NO_WRITING.search(query):
-            recognition.notes.append(_READS_ONLY)
-            if set_ := self._set(match["owner"] or "", match["name"] or ""):
-                recognition.add(set_, 0.97, "error message")
+        self._only_reading(query, recognition)
         if forms.POSITIONAL.search(query):
             recognition.notes.append(NO_OVERRIDE)
             recognition.add(OVERRIDE, 0.98, "error message")
@@ -86,6 +87,19 @@ class Operators:
                 if entry := self._reader.entry(f"bmesh.ops.{name}"):
                     recognition.add(entry.path, max(0.82, 0.95 * alike), "similar name")
             recognition.notes.append(f"`bmesh.ops` has no `{match['name']}`.")
+
+    def _only_reading(self, query: str, recognition: Recognition) -> None:
+        """What was written, or called, where Blender only reads."""
+        if match := forms.NO_WRITING.search(query):
+            recognition.notes.append(_READS_ONLY)
+            if set_ := self._set(match["owner"] or "", match["name"] or ""):
+                recognition.add(set_, 0.97, "error message")
+        if match := forms.NO_CALLING.search(query):
+            recognition.notes.append(_CALLED_WHILE_READING)
+            recognition.add(f"{TYPES}Operator.execute", 0.9, "error message")
+            recognition.add("bpy.app.timers.register", 0.89, "error message")
+            if operator := self._reader.symbol(match["path"]):
+                recognition.add(operator.path, 0.98, "error message")
 
     @staticmethod
     def _tells_alone(operator: Symbol, message: str) -> bool:

@@ -23,6 +23,12 @@ _REGISTERED = (
     "FileHandler",
     "AssetShelf",
 )
+_HAVING_TYPE = frozenset({"PointerProperty", "CollectionProperty"})
+_OF_TYPE = "the class in `type` is not registered yet (`bpy.utils.register_class` comes first)"
+_OF_ARGUMENTS = (
+    "an argument is refused: a `default` of another type or length, or that is none of `items`, an unknown name, or a "
+    "function with another number of arguments (`update` and `items` get `(self, context)`)"
+)
 
 
 class Registration:
@@ -45,8 +51,8 @@ class Registration:
         for match in forms.first_matches(forms.NO_PROPERTY, query):
             recognition.add(f"bpy.props.{match['kind']}", 0.98, "error message")
             recognition.notes.append(
-                "The cause is the error that Blender printed before this one, on stderr: mostly that the class in "
-                "`type` is not registered yet (`bpy.utils.register_class` comes first)."
+                "The cause is the error that Blender printed before this one, on stderr: mostly that "
+                f"{_OF_TYPE if match['kind'] in _HAVING_TYPE else _OF_ARGUMENTS}."
             )
         for match in forms.first_matches(forms.EXPECTED_MEMBER, query):
             if entry := self._reader.entry(f"{TYPES}{match['base']}.{match['name']}"):

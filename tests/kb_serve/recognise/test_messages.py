@@ -1318,3 +1318,103 @@ def test_what_a_pattern_fits_is_told_from_a_question_by_one_of_its_words() -> No
     assert len(fitting) > 100
     assert [text for text in fitting if not may_be_message(text)] == []
     assert not may_be_message("make a cloth collide with itself")
+
+
+@pytest.mark.parametrize(
+    ("message", "path", "said"),
+    [
+        (
+            'RuntimeError: Calling operator "bpy.ops.object.select_all" error, cannot modify blend data in this state '
+            "(drawing/rendering)",
+            "bpy.ops.object.select_all",
+            "No operator is called while Blender only reads",
+        ),
+        (
+            'RuntimeError: Calling operator "bpy.ops.object.mode_set" error, can\'t modify blend data in this state '
+            "(drawing/rendering)",
+            "bpy.ops.object.mode_set",
+            "No operator is called while Blender only reads",
+        ),
+        (
+            "TypeError: on_frame() missing 1 required positional argument: 'scene'",
+            "bpy.app.handlers",
+            "`handlers.append(on_frame)`: `on_frame()` calls it at once",
+        ),
+        (
+            "TypeError: update_size() missing 1 required positional argument: 'context'",
+            "",
+            "`update_size` is a function of the script's own",
+        ),
+        (
+            "AttributeError: 'list' object has no attribute 'inverted'",
+            "mathutils.Matrix.inverted",
+            "a matrix has: ",
+        ),
+        (
+            "AttributeError: 'tuple' object has no attribute 'normalized'",
+            "mathutils.Vector.normalized",
+            "`mathutils.Vector(value).normalized()`",
+        ),
+        (
+            "AttributeError: 'NoneType' object has no attribute 'type' and no __dict__ for setting new attributes",
+            "bpy.types.Object.rigid_body",
+            "`bpy.types.Object.rigid_body` is None before",
+        ),
+    ],
+)
+def test_a_message_says_what_was_done_wrong(kb: KnowledgeBase, message: str, path: str, said: str) -> None:
+    answer = kb.query(message)
+    assert not path or answer.hits[0].id == path
+    assert said in "\n".join(answer.notes)
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        "TypeError: Mesh.from_pydata() missing 1 required positional argument: 'faces'",
+        "TypeError: Drop.__init__() takes 1 positional argument but 2 were given",
+        "TypeError: handler() missing 1 required positional argument: 'depsgraph'",
+    ],
+)
+def test_what_blender_has_is_no_function_of_the_scripts_own(kb: KnowledgeBase, message: str) -> None:
+    assert "of the script's own" not in "\n".join(kb.query(message).notes)
+
+
+def test_what_is_set_on_none_is_not_read_only(kb: KnowledgeBase) -> None:
+    message = "AttributeError: 'NoneType' object has no attribute 'type'"
+    assert "bpy.types.Object`" in "\n".join(kb.query(message).notes)
+    setting = kb.query(f"{message} and no __dict__ for setting new attributes")
+    assert "bpy.types.Object`" not in "\n".join(setting.notes)
+
+
+@pytest.mark.parametrize(("kind", "said"), [("Pointer", "class in `type`"), ("Float", "number of arguments")])
+def test_what_keeps_a_property_from_registering_is_told_of_its_kind(
+    kb: KnowledgeBase, kind: str, said: str
+) -> None:
+    error = f"ValueError: bpy_struct \"Scene\" registration error: 'own' {kind}Property could not register"
+    assert said in "\n".join(kb.query(error).notes)
+
+
+@pytest.mark.blender
+def test_blender_calls_no_operator_while_it_only_reads() -> None:
+    bpy = pytest.importorskip("bpy")
+
+    class Asking(bpy.types.Operator):
+        bl_idname = "wm.asking"
+        bl_label = "Asking"
+        said = ""
+
+        @classmethod
+        def poll(cls, context: object) -> bool:
+            try:
+                bpy.ops.object.select_all(action="SELECT")
+            except RuntimeError as error:
+                Asking.said = str(error)
+            return True
+
+    bpy.utils.register_class(Asking)
+    try:
+        assert bpy.ops.wm.asking.poll()
+    finally:
+        bpy.utils.unregister_class(Asking)
+    assert "modify blend data in this state (drawing/rendering)" in Asking.said

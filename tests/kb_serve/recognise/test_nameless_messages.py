@@ -17,6 +17,14 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 _STATEMENTS = """\
+one, two = (1,)
+bpy.data.objects("Cube")
+ob.material_slots[0] = bpy.data.materials.new("m")
+import mathutils; mathutils.Matrix(1, 2, 3)
+lost_image(); bpy.ops.object.bake()
+bpy.types.Scene.own = bpy.props.FloatProperty(update=lambda self: None)
+bpy.types.Scene.own = bpy.props.EnumProperty(items=lambda self: [])
+registered("Operator", execute=lambda self: {"FINISHED"})
 bpy.data.objects.new("o", None).select_set(True)
 bpy.ops.mesh.primitive_cube_add().location
 bpy.ops.mesh.primitive_cube_add()[0]
@@ -281,6 +289,15 @@ def register_operator_with_own_init():
 def restricted():
     restriction.append(_bpy_restrict_state.RestrictBlend())
     restriction[-1].__enter__()
+
+def lost_image():
+    scene.render.engine = "CYCLES"
+    nodes = ob.data.materials[0].node_tree.nodes
+    node = nodes.new("ShaderNodeTexImage")
+    node.image = bpy.data.images.new("Lost", 8, 8)
+    node.image.source = "FILE"
+    node.image.filepath = "/lost.png"
+    nodes.active = node
 
 def cycle():
     other = bpy.data.objects["Camera"]

@@ -24,6 +24,10 @@ _WHOLE = (
     "An index, and how often something is repeated, is a whole number; coordinates and what `/` gives are floats: "
     "`int(value)`, `round(value)`, `count // 2`."
 )
+_PARTS = (
+    "a location has three numbers (`x, y, z = obj.location`), a colour four, `vector.xy` two; `scene.ray_cast(…)` "
+    "gives six values, `obj.ray_cast(…)` and `obj.closest_point_on_mesh(…)` four."
+)
 PYTHON = (
     NamelessMessage(
         ("type str doesn't define __round__ method",),
@@ -51,8 +55,24 @@ PYTHON = (
     NamelessMessage(
         ("too many values to unpack (expected ",),
         ("mathutils.Vector", "mathutils.Quaternion"),
-        "The right side has more parts than there are names: a location has three numbers (`x, y, z = "
-        "obj.location`), a colour four, and `vector.xy` two.",
+        f"The right side has more parts than there are names: {_PARTS}",
+    ),
+    NamelessMessage(
+        ("not enough values to unpack (expected ",),
+        ("mathutils.Vector", "mathutils.Quaternion"),
+        f"The right side has fewer parts than there are names: {_PARTS}",
+    ),
+    NamelessMessage(
+        ("'bpy_prop_collection' object is not callable",),
+        (COLLECTION, f"{T}bpy_prop_collection.get"),
+        'A collection is no function: `bpy.data.objects["Cube"]` takes one of its elements, '
+        "`for ob in bpy.data.objects:` all.",
+    ),
+    NamelessMessage(
+        ("bpy_prop_collection[key] = value: invalid, expected a 'MaterialSlot'",),
+        (f"{T}MaterialSlot.material", f"{T}Mesh.materials"),
+        "A slot is not a material, but holds one: `obj.material_slots[0].material = material`. The materials of a "
+        "mesh are themselves assigned: `mesh.materials[0] = material`.",
     ),
     NamelessMessage(
         ("expected a string enum in ('INVOKE_DEFAULT'",),

@@ -5,7 +5,27 @@ from __future__ import annotations
 from kb_build.symbols.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
+_OF_PROPERTIES = (
+    "Functions of a property get arguments: `update` and `items` `(self, context)`, `get` `(self)`, `set` "
+    "`(self, value)`."
+)
 REGISTRATION = (
+    NamelessMessage(
+        (" keyword: expected a function taking ",),
+        ("bpy.props.FloatProperty", "bpy.props.EnumProperty"),
+        _OF_PROPERTIES,
+    ),
+    NamelessMessage(
+        ("EnumProperty(...): expected 'items' function to take ",),
+        ("bpy.props.EnumProperty",),
+        _OF_PROPERTIES,
+    ),
+    NamelessMessage(
+        (' class "', '" function to have ', " args, found "),
+        (f"{T}Operator.execute", f"{T}Panel.draw"),
+        "`self` is counted: `def execute(self, context):`, and so `draw`; `def invoke(self, context, event):`, and so "
+        "`modal`; `@classmethod` above `def poll(cls, context):`.",
+    ),
     NamelessMessage(
         ("register_class(...): already registered as a subclass",),
         ("bpy.utils.unregister_class", "bpy.utils.register_class"),

@@ -88,6 +88,12 @@ RENDERING = (
         "`node.select = True`.",
     ),
     NamelessMessage(
+        ("Uninitialized image ", " from object "),
+        (f"{_O}bake", f"{T}BlendDataImages.new"),
+        "The image to bake into has no pixels, as where its file is missing: give the node one that has, "
+        '`node.image = bpy.data.images.new("Bake", 1024, 1024)`.',
+    ),
+    NamelessMessage(
         ("No active image found, add a material",),
         (f"{_O}bake", f"{T}Nodes.active"),
         "The object has no material with an image to bake into: give it one whose active node is an image texture, or "

@@ -20,6 +20,11 @@ _IS_ARRAY = (
 )
 VECTORS = (
     NamelessMessage(
+        ("mathutils.Matrix(): expects no args or a single arg",),
+        ("mathutils.Matrix",),
+        "The rows are given as one sequence: `Matrix(((1, 0, 0), (0, 1, 0), (0, 0, 1)))`.",
+    ),
+    NamelessMessage(
         ("[begin:end] = [...]: sequence size is ",),
         ("mathutils.Vector",),
         "A slice takes as many numbers as it has: three for `location[:]`, two for `location[:2]` or `location.xy`.",
