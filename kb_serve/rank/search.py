@@ -16,6 +16,7 @@ import numpy as np
 from kb_build.index.analysis import stem, stems_of, words
 from kb_build.schema import DOCUMENT_KINDS
 from kb_build.symbols.api_names import NODE, OPERATORS
+from kb_serve.rank.asked_words import NODE_WORDS, SCRIPT_WORDS
 from kb_serve.rank.inverted_index import InvertedIndex
 from kb_serve.rank.query_words import QueryWords
 from kb_serve.rank.scoring import Concept, said_phrases, score_all
@@ -152,17 +153,22 @@ class Searcher:
             units.chapters[numbers],
             units.kinds[numbers],
             self.index.symbols[numbers],
-            self._called(numbers, concepts),
+            self._called(numbers, concepts, frozenset(words(text))),
         )
         return numbers, evidence
 
-    def _called(self, numbers: NDArray[np.intp], concepts: Sequence[Concept]) -> Scores | None:
+    def _called(
+        self, numbers: NDArray[np.intp], concepts: Sequence[Concept], said_words: Set[str]
+    ) -> Scores | None:
         """The share of the query that the names of operators are, of some words, which the query says whole, and in
         part that the labels of nodes are, and the names of members with their owners'; None if it says none.
+
+        Nodes are not called where a script is asked for and no node: others do what their labels say.
         """
         asked = {concept.stem: concept.idf for concept in concepts}
         said = frozenset(asked)
         kinds = said & _KINDS
+        with_nodes = SCRIPT_WORDS.isdisjoint(said_words) or not NODE_WORDS.isdisjoint(said_words)
         called: Scores | None = None
         units = self.index.levels[0]
         nearest = numbers[:_NEAREST]
@@ -170,7 +176,7 @@ class Searcher:
             zip(nearest.tolist(), units.kinds[nearest].tolist(), strict=True)
         ):
             ref = units.refs[number]
-            label = self._node_labels.get(ref) if kind == _NODE else None
+            label = self._node_labels.get(ref) if kind == _NODE and with_nodes else None
             name, counts = _said_name(ref, said, kinds) if label is None else (stems_of(label), _AS_NODE)
             if len(name) >= _WORDS_OF_A_NAME and name <= said:
                 called = np.zeros(len(numbers), np.float32) if called is None else called

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key
 from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT
 from kb_build.symbols.api_names import OPERATORS, TYPES
+from kb_serve.rank.asked_words import NODE_WORDS, SCRIPT_WORDS
 from kb_serve.recognise.chains.chain_starts import PROPERTIES
 from kb_serve.recognise.message_patterns import is_message
 from kb_serve.recognise.named.addresses import find_page
@@ -32,6 +33,9 @@ _NEAR = 2  # dots in the path of a module that a bare word may mean
 _LONG_LABEL = 3  # words, which no question has by chance
 _MOST_WORDS = 9  # of a question in which labels are looked for
 _LABEL_WORDS = (3, 2)
+_GEOMETRY_NODE = f"{TYPES}GeometryNode"
+_OF_SCRIPTS = SCRIPT_WORDS | {"bmesh"}
+_BY_CHANCE = 0.75  # of a label that a question says for something else; the search tells more
 _LABEL_WITHIN = (
     0.79  # how sure what a part of a question is called is: it comes after the first that the words find
 )
@@ -219,6 +223,8 @@ class Spellings:
             if length < len(words)
         ]
         typed = frozenset(parts)
+        said = frozenset(map(str.lower, words))
+        for_a_script = NODE_WORDS.isdisjoint(said) and not _OF_SCRIPTS.isdisjoint(said)
         # Looked up in memory: there are dozens in a question, and hardly ever a class is called so.
         # ``track to`` is a constraint, and so is ``copy location``; a modifier's name alone is mostly a plain word.
         parts += [f"{part} constraint" for part in parts]
@@ -231,8 +237,10 @@ class Spellings:
             self._reader.entry.load(paths)
             classes = list(filter(None, map(self._reader.entry, paths)))
             is_typed = part.count(" ") + 1 >= _LONG_LABEL and part in typed
-            sure = WHOLE_LABEL if is_typed else _LABEL_WITHIN
             for rank, entry in enumerate(self._reader.usage.heaviest(classes)[:_OF_A_LABEL]):
+                # Geometry nodes are called what scripts do otherwise: ``convert curve to mesh by python``.
+                by_chance = for_a_script and self._reader.descends(entry.path, _GEOMETRY_NODE)
+                sure = _BY_CHANCE if by_chance else WHOLE_LABEL if is_typed else _LABEL_WITHIN
                 recognition.add(entry.path, sure - 0.01 * rank, "label")
 
     def _lost_within(self, words: Sequence[str], recognition: Recognition) -> None:

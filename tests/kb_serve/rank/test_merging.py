@@ -163,3 +163,29 @@ def test_who_writes_a_script_gets_a_name_before_a_page_that_is_hardly_better(
     assert (ranked[0].id == name.ref) is is_first
     assert {row.id for row in ranked[:2]} == {page.ref, name.ref}
     assert [row.score for row in ranked] == sorted((row.score for row in ranked), reverse=True)
+
+
+@pytest.mark.parametrize(
+    ("query", "first"),
+    [
+        ("convert curve to mesh python", "bpy.ops.object.convert"),
+        ("extrude mesh python", "bpy.ops.mesh.extrude_region_move"),
+        ("remove doubles merge by distance bmesh", "bmesh.ops.remove_doubles"),
+    ],
+)
+def test_a_node_with_the_label_of_what_is_done_is_not_the_first_for_a_script(
+    ranker: QueryRanker, query: str, first: str
+) -> None:
+    assert ranker.rank(query).ranked[0].id == first
+
+
+@pytest.mark.parametrize(
+    ("query", "first"),
+    [
+        ("curve to mesh node", "bpy.types.GeometryNodeCurveToMesh"),
+        ("curve to mesh geometry nodes python", "bpy.types.GeometryNodeCurveToMesh"),
+        ("mix two shaders by python", "bpy.types.ShaderNodeMixShader"),
+    ],
+)
+def test_a_node_that_is_asked_for_is_the_first(ranker: QueryRanker, query: str, first: str) -> None:
+    assert ranker.rank(query).ranked[0].id == first
