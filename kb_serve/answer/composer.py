@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 
 _KNOWN_OF = 3  # hits for a description among which what one has to know of them is looked for
 _NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
+_KNOWN_OF_A_PART = 1
 _SETTINGS = 2  # of a topic that are hits before its classes
 _LESS = 0.02  # score from one id to the next, where nothing was ranked
 _OPERATOR = re.compile(r"bpy\.ops\.\w+\.\w+")
@@ -182,7 +183,7 @@ class AnswerComposer:
         return draft_of("candidates", hits, notes, blocks)
 
     def _answer_each(self, parts: Sequence[QuestionPart], ranking: Ranking, limit: int) -> Draft:
-        """The names and the page for each part of a question, in brief."""
+        """The names and the page for each part of a question, in brief, and the first of what one has to know of it."""
         blocks: list[AnswerBlock] = []
         found: list[list[RankedId]] = []
         for number, part in enumerate(parts, 1):
@@ -194,7 +195,9 @@ class AnswerComposer:
             pages = [place for place, hit in enumerate(hits) if hit.is_page]
             chosen = [*names[:_NAMES_OF_A_PART], *pages[:_PAGES_OF_A_PART]]
             lines = [f"- {self._lines.line(hits[place], rows[place])}" for place in chosen]
-            lines = [*self._topics.first_steps(part.topic, _STEPS_OF_A_PART), *lines]
+            first = [hits[place] for place in chosen[:1]]
+            known = [*self._known(first, part.asked, is_named=False)][:_KNOWN_OF_A_PART]
+            lines = [*self._topics.first_steps(part.topic, _STEPS_OF_A_PART), *known, *lines]
             blocks.append(AnswerBlock("\n".join((f"**{number}. {part.text}**", *lines)), part.text))
             found.append([rows[place] for place in sorted(chosen)])
         # In turns, as each part is one of several answers.

@@ -70,8 +70,9 @@ _TYPED = (
 )
 _FILMED = (
     "A film: `scene.render.image_settings.media_type = 'VIDEO'` comes first, then "
-    "`scene.render.ffmpeg.format = 'MPEG4'`, `scene.render.ffmpeg.codec = 'H264'`. With images as the medium, 'FFMPEG' "
-    "is no value of `file_format`."
+    "`scene.render.ffmpeg.format = 'MPEG4'`, `scene.render.ffmpeg.codec = 'H264'`, and "
+    "`bpy.ops.render.render(animation=True)` renders it. With images as the medium, 'FFMPEG' is no value of "
+    "`file_format`."
 )
 _COMPOSITOR = f"{TYPES}Scene.compositing_node_group"
 _COMPOSED = (
@@ -128,7 +129,9 @@ _BASIS = (
 )
 _EXPRESSED = (
     "An expression knows its driver's variables, `frame`, the functions of Python's `math` without that name "
-    "(`sin(frame / 10)`), `clamp`, `lerp`, `smoothstep`, and `self` while `driver.use_self` is True."
+    "(`sin(frame / 10)`), `clamp`, `lerp`, `smoothstep`, `self` while `driver.use_self` is True, and a function of "
+    'your own by `bpy.app.driver_namespace["name"] = name`, which a loaded file forgets: set it in a `load_post` '
+    "handler, too."
 )
 _ADDED_TO_WORLD = (
     "`bpy.ops.rigidbody.world_add()` leaves the `collection` and the `constraints` of the world None. After "
@@ -169,6 +172,14 @@ _RANGED = (
 _NO_TIMERS = (
     "Timers run between the events of a Blender with a window. Without one (`--background`, or `import bpy` in another "
     "Python) none ever runs: call the function yourself there."
+)
+_REPEATED = (
+    "A function that returns a number is called again after as many seconds (`return 1.0`), one that returns None no "
+    "more."
+)
+_BY_MODE = (
+    "A new pose bone is turned by its `rotation_quaternion`: `rotation_euler` does nothing before "
+    "`pose_bone.rotation_mode = 'XYZ'`."
 )
 _WANTS_MATERIAL = "'MATERIAL' crashes Blender as long as the object has no material: give it one before."
 _NO_SIZES = "An empty list crashes Blender: `if sizes: data.add_{}(sizes)`. Each size is at least 1."
@@ -246,6 +257,8 @@ ADVICE: tuple[Advice, ...] = (
         frozenset({"bpy.app.timers", "bpy.app.timers.register"}),
         about=stems("timer delay interval later second repeat periodic"),
     ),
+    Advice(_REPEATED, frozenset({"bpy.app.timers"})),
+    Advice(_BY_MODE, of("PoseBone.rotation_euler")),
     Advice(
         NO_FLUIDS,
         frozenset({"bpy.ops.object.quick_liquid", "bpy.ops.object.quick_smoke"})
@@ -275,6 +288,11 @@ ADVICE: tuple[Advice, ...] = (
     Advice(_BAKED_BY, frozenset({"bpy.ops.object.bake"}) | of("CyclesRenderSettings.bake_type")),
     Advice(_COMPRESSED, frozenset({"bpy.ops.wm.save_as_mainfile", "bpy.ops.wm.save_mainfile"})),
     Advice(_UNREAD, of("Image.pixels", "Image"), asked=stems("render result")),
+    Advice(
+        _UNREAD,
+        wherever=(stems("render rendered"), stems("image result"), stems("pixel pixels")),
+        unless=stems("aspect baking cycles filter node resolution size texture"),
+    ),
     Advice(_RATED, of("RenderSettings.fps", "RenderSettings.fps_base")),
     Advice(_UNRENDERED, of("World.color")),
     Advice(_MOVED, frozenset({_RIGID_BODY}), chapters_of=_RIGID_BODY),

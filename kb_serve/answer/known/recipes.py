@@ -90,10 +90,75 @@ _ORIGIN = (
     "with 'ORIGIN_CURSOR' to the 3D cursor. Without an operator, to `place` in the object's own space: "
     "`ob.data.transform(Matrix.Translation(-place))`, `ob.matrix_world.translation = ob.matrix_world @ place`."
 )
+_OF_EACH_CAMERA = (
+    "From each camera: `for camera in [ob for ob in scene.objects if ob.type == 'CAMERA']:`, and in it "
+    '`scene.camera = camera`, `scene.render.filepath = f"/folder/{camera.name}.png"`, '
+    "`bpy.ops.render.render(write_still=True)`."
+)
+_PLACED = "In the world: `[ob.matrix_world @ vertex.co for vertex in ob.data.vertices]`, of the mesh without modifiers."
+_UNKEYED = (
+    "`ob.animation_data_clear()` removes all keyframes of an object, with its drivers and NLA tracks, and so for other "
+    "data (`ob.data`, `material.node_tree`). The keys of one property are an F-Curve of the action's channelbag: "
+    '`bag.fcurves.remove(bag.fcurves.find("location", index=0))`; one key goes by '
+    '`ob.keyframe_delete("location", frame=10)`.'
+)
+_UNKEYED_IN_ACTION = (
+    "`ob.animation_data_clear()` removes all keyframes of an object, with its drivers and NLA tracks, and so for other "
+    "data (`ob.data`, `material.node_tree`). One key goes by "
+    '`ob.keyframe_delete("location", frame=10)`.'
+)
+_LIMITED = (
+    'Of a node\'s socket: `limits = socket.bl_rna.properties["default_value"]`, then `limits.hard_min`, `hard_max`, '
+    "`soft_min` and `soft_max`, which are of its class; an input of a group has its own: "
+    '`tree.interface.items_tree["Size"].min_value`, `max_value`.'
+)
 
 _OBJECTS = stems("object objects")
 _NODES = stems("geometry modifier node nodes")
 RECIPES: tuple[Advice, ...] = (
+    Advice(
+        _OF_EACH_CAMERA,
+        wherever=(
+            stems("camera cameras"),
+            stems("all angles different each every loop multiple several various views"),
+            stems("render rendering renders"),
+        ),
+        unless=stems("animate lens marker markers panorama stereo viewport"),
+    ),
+    Advice(
+        _PLACED,
+        wherever=(
+            stems("vertex vertices"),
+            stems("global world"),
+            stems("co coordinate coordinates location locations position positions"),
+        ),
+        unless=stems("after cloth deformed evaluated group modifier modifiers node nodes shader simulation"),
+    ),
+    *(
+        Advice(
+            text,
+            wherever=(
+                stems("animation keyframe keyframes"),
+                stems("clear delete remove"),
+                stems("all every everything whole"),
+            ),
+            unless=stems("bone data marker markers material modifier node strip unused"),
+            since=since,
+            before=before,
+        )
+        for text, since, before in (
+            (_UNKEYED, (4, 4), (99, 0)),
+            (_UNKEYED_IN_ACTION, (0, 0), (4, 4)),
+        )
+    ),
+    Advice(
+        _LIMITED,
+        wherever=(
+            stems("socket sockets"),
+            stems("limit limits max maximum min minimum range"),
+        ),
+        unless=stems("group interface panel property"),
+    ),
     Advice(
         _STALE,
         of("Object.matrix_world", "ViewLayer.update"),

@@ -276,3 +276,88 @@ def test_an_origin_moves_and_what_is_seen_stays(kb: KnowledgeBase) -> None:
 )
 def test_a_question_of_something_else_is_told_none(question: str, kb: KnowledgeBase) -> None:
     assert not {recipe.text for recipe in RECIPES}.intersection(kb.query(question).notes)
+
+
+def test_each_camera_renders_its_own_file(kb: KnowledgeBase, tmp_path: Path) -> None:
+    text = told(kb, "render from several cameras in a loop and save each image")
+    scene = bpy.context.scene
+    other = bpy.data.objects["Camera"].copy()
+    scene.collection.objects.link(other)
+    scene.render.engine = "BLENDER_WORKBENCH" if not bpy.app.background else "CYCLES"
+    scene.cycles.samples = 1
+    scene.render.resolution_x = scene.render.resolution_y = 4
+    loop, *body = CODE.findall(text)
+    lines = "\n".join(f"    {line}" for line in body).replace("/folder", tmp_path.as_posix())
+    exec(f"{loop}\n{lines}", {"bpy": bpy, "scene": scene})
+    assert {path.name for path in tmp_path.iterdir()} == {"Camera.png", "Camera.001.png"}
+
+
+def test_vertices_are_placed_in_the_world(kb: KnowledgeBase) -> None:
+    text = told(kb, "get the global coordinates of all vertices")
+    ob = cube()
+    ob.location.x = 5
+    updated()
+    places = eval(CODE.findall(text)[0], {"ob": ob})
+    assert max(place.x for place in places) == pytest.approx(6)
+
+
+def test_all_keyframes_of_an_object_are_removed(kb: KnowledgeBase) -> None:
+    text = told(kb, "delete all keyframes of an object")
+    ob = cube()
+    ob.keyframe_insert("location", frame=10)
+    ob.keyframe_insert("scale", frame=1)
+    animated = ob.animation_data
+    bag = animated.action.layers[0].strips[0].channelbag(animated.action_slot)
+    codes = CODE.findall(text)
+    exec(next(code for code in codes if code.startswith("bag.")), {"bag": bag})
+    assert bag.fcurves.find("location", index=0) is None
+    exec(next(code for code in codes if "keyframe_delete" in code), {"ob": ob})
+    assert {fcurve.data_path for fcurve in bag.fcurves} == {"scale"}
+    exec(codes[0], {"ob": ob})
+    assert ob.animation_data is None
+
+
+def test_a_socket_has_the_limits_of_its_class_or_its_group(kb: KnowledgeBase) -> None:
+    text = told(kb, "how do I get the min and max of a node socket's slider")
+    socket = cube().active_material.node_tree.nodes["Principled BSDF"].inputs["Roughness"]
+    held: dict[str, Any] = {"socket": socket}
+    exec(CODE.findall(text)[0], held)
+    limits = held["limits"]
+    assert (limits.hard_min, limits.soft_min, limits.soft_max, limits.hard_max) == (0, 0, 1, 1)
+    tree = bpy.data.node_groups.new("Group", "ShaderNodeTree")
+    own = tree.interface.new_socket("Size", in_out="INPUT", socket_type="NodeSocketFloat")
+    own.max_value = 2
+    assert tree.interface.items_tree["Size"].max_value == 2
+    node = cube().active_material.node_tree.nodes.new("ShaderNodeGroup")
+    node.node_tree = tree
+    assert node.inputs["Size"].bl_rna.properties["default_value"].hard_max > 2
+
+
+def test_a_part_of_a_question_is_told_what_one_has_to_know(kb: KnowledgeBase) -> None:
+    answer = kb.query("get rendered image pixels without saving to disk, Render Result pixels are empty").text
+    assert "parts, each answered in brief" in answer
+    assert "has no pixels to read" in answer
+
+
+def test_a_pose_bone_is_turned_by_its_mode() -> None:
+    bpy.ops.object.armature_add()
+    ob = bpy.context.object
+    bone = ob.pose.bones[0]
+    for mode, is_turned in (("QUATERNION", False), ("XYZ", True)):
+        bone.rotation_mode = mode
+        bone.rotation_euler = (1, 0, 0)
+        updated()
+        assert (bone.matrix_basis != Matrix()) == is_turned
+        bone.rotation_euler = (0, 0, 0)
+
+
+def test_a_driver_calls_a_function_of_ones_own(kb: KnowledgeBase) -> None:
+    (text,) = (
+        note for note in kb.query("driver expression with my own function").notes if "namespace" in note
+    )
+    statement = next(code for code in CODE.findall(text) if "namespace" in code)
+    exec(statement, {"bpy": bpy, "name": lambda frame: 2 * frame})
+    ob = cube()
+    ob.driver_add("location", 0).driver.expression = "name(frame)"
+    bpy.context.scene.frame_set(4)
+    assert ob.location.x == 8
