@@ -14,7 +14,8 @@ vert[bm.loops.layers.uv.active]  # reported: a layer of loops
 Settings.__annotations__["count"][1]  # reported: .keywords, since 2.93
 ```
 
-Reported too: what is assigned to an item of a collection by name, and items that are deleted; an index beyond a vector,
+Reported too: what is assigned to an item of a collection, other than the materials of data, or by name, and items that
+are deleted; an index beyond a vector,
 or beyond the sockets of a node whose sockets are always the same. Not reported: names that may be there or not.
 """
 
@@ -66,6 +67,8 @@ if TYPE_CHECKING:
 _VECTORS = frozenset({*LENGTHS, "mathutils.Vector", "mathutils.Matrix"})
 _NO_STEPS = frozenset({"bmesh.types.BMVertSeq", "bmesh.types.BMEdgeSeq", "bmesh.types.BMFaceSeq",
                        "bmesh.types.BMLoopSeq", "bmesh.types.BMElemSeq"})  # fmt: skip
+# The collections of which items are assigned to, and those of the script's own.
+_ASSIGNED = frozenset({f"{T}IDMaterials", GROUPS})
 # Structures that refuse custom properties of any name, as tried.
 _NO_CUSTOM_PROPERTIES = frozenset({CONTEXT, BLEND_DATA, f"{T}RenderSettings", f"{T}MeshVertex"})
 _DECLARATIONS_SINCE = 2, 93
@@ -193,6 +196,9 @@ def _of_changed(node: ast.Subscript, kind: Collection, key: Type | None) -> str:
         return f"Items of `{path}` are not deleted with `del`: call what the collection has for it, `remove` or `pop`."
     if isinstance(node.ctx, ast.Store) and _is_text(key):
         return f"Items of `{path}` are assigned to by index, not by name."
+    is_item = isinstance(node.ctx, ast.Store) and not isinstance(node.slice, ast.Slice)
+    if is_item and isinstance(kind.element, Instance) and kind.container not in _ASSIGNED:
+        return f"Items of `{path}` are not assigned to: set a property of one, as `item.name = value`."
     return ""
 
 

@@ -246,6 +246,9 @@ ob.location @= ob.matrix_world
 scene[0]
 ob[None]
 mesh.vertices["a"]
+mesh.vertices[0] = (0, 0, 0)
+mesh.vertices[0] = mesh.vertices[1]
+bpy.data.objects[0] = ob
 tree.interface.items_tree[1.5]
 mesh.vertices[1.5]
 bpy.data.objects[::2]
@@ -312,6 +315,7 @@ ob.hide_render = 1
 ob.pass_index = True
 ob.parent = None
 ob.data = bpy.data.meshes.new("other")
+ob.data.materials.append(material); ob.data.materials[0] = material; ob.data.materials[0] = None
 ob.data.vertices
 ob.lock_location = (True, False, True)
 ob.lock_location[0] = 1
