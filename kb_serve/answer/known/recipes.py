@@ -112,10 +112,53 @@ _LIMITED = (
     "`soft_min` and `soft_max`, which are of its class; an input of a group has its own: "
     '`tree.interface.items_tree["Size"].min_value`, `max_value`.'
 )
+_BESIDE = (
+    "In a BMesh: `vert.link_edges` and `vert.link_faces` are what a vertex is part of, `edge.link_faces` the faces of "
+    "an edge, `edge.other_vert(vert)` its other end: `[edge.other_vert(vert) for edge in vert.link_edges]`."
+)
+_EVALUATED = "`fcurve.evaluate(frame)` is the value of an F-Curve at a frame, between its keys, too."
+_UNDER_MOUSE = (
+    "What is under the mouse, in an operator's `modal()`: `place = event.mouse_region_x, event.mouse_region_y`, "
+    "`view = context.region, context.region_data, place`, `origin = view3d_utils.region_2d_to_origin_3d(*view)`, "
+    "`direction = view3d_utils.region_2d_to_vector_3d(*view)`, then `hit, location, normal, index, ob, matrix = "
+    "context.scene.ray_cast(context.evaluated_depsgraph_get(), origin, direction)`."
+)
+_OF_TYPE = "`for ob in bpy.context.view_layer.objects: ob.select_set(ob.type == 'MESH')`"
 
 _OBJECTS = stems("object objects")
 _NODES = stems("geometry modifier node nodes")
 RECIPES: tuple[Advice, ...] = (
+    Advice(
+        _BESIDE,
+        wherever=(
+            stems("adjacent attached connected link linked neighbor neighbors neighbour neighbours"),
+            stems("edge edges face faces vert verts vertex vertices"),
+            stems("find get how list of to"),
+        ),
+        unless=stems(
+            "collection constraint delete dissolve geometry island material node nodes object select selected uv "
+            "weight"
+        ),
+    ),
+    Advice(
+        _EVALUATED,
+        wherever=(stems("f-curve fcurve fcurves"), stems("evaluate value values"), stems("frame frames")),
+        unless=stems("bake insert modifier range set"),
+    ),
+    Advice(
+        _UNDER_MOUSE,
+        wherever=(
+            stems("cursor mouse"),
+            stems("object point ray raycast surface"),
+            stems("cast ray raycast under"),
+        ),
+        unless=stems("3d node snap"),
+    ),
+    Advice(
+        _OF_TYPE,
+        wherever=(stems("select"), stems("all every"), _OBJECTS, stems("type")),
+        unless=stems("bone collection material menu node"),
+    ),
     Advice(
         _OF_EACH_CAMERA,
         wherever=(

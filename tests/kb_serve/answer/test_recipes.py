@@ -361,3 +361,38 @@ def test_a_driver_calls_a_function_of_ones_own(kb: KnowledgeBase) -> None:
     ob.driver_add("location", 0).driver.expression = "name(frame)"
     bpy.context.scene.frame_set(4)
     assert ob.location.x == 8
+
+
+def test_what_is_beside_a_vertex_is_linked(kb: KnowledgeBase) -> None:
+    text = told(kb, "get the edges connected to a vertex")
+    bm = bmesh.new()
+    bm.from_mesh(cube().data)
+    bm.verts.ensure_lookup_table()
+    vert = bm.verts[0]
+    edge = vert.link_edges[0]
+    assert [len(eval(code, {"vert": vert, "edge": edge})) for code in CODE.findall(text)[:3]] == [3, 3, 2]
+    assert len(eval(CODE.findall(text)[-1], {"vert": vert})) == 3
+
+
+def test_an_f_curve_has_a_value_at_any_frame(kb: KnowledgeBase) -> None:
+    text = told(kb, "get the value of an fcurve at a frame")
+    ob = cube()
+    for frame, ob.location.x in ((1, 0), (11, 10)):
+        ob.keyframe_insert("location", index=0, frame=frame)
+    animated = ob.animation_data
+    (fcurve,) = animated.action.layers[0].strips[0].channelbag(animated.action_slot).fcurves
+    assert eval(CODE.findall(text)[0], {"fcurve": fcurve, "frame": 6}) == pytest.approx(5)
+
+
+def test_a_ray_from_the_mouse_gives_six_values(kb: KnowledgeBase) -> None:
+    text = told(kb, "which object is under the mouse cursor, ray cast")
+    cast = CODE.findall(text)[-1]
+    held: dict[str, Any] = {"context": bpy.context, "origin": (0, 0, 9), "direction": (0, 0, -1)}
+    exec(cast, held)
+    assert held["hit"]
+    assert held["ob"].name == "Cube"
+
+
+def test_all_objects_of_a_type_are_selected(kb: KnowledgeBase) -> None:
+    exec(CODE.findall(told(kb, "how to select all objects of type mesh"))[0], {"bpy": bpy})
+    assert [ob.name for ob in bpy.context.selected_objects] == ["Cube"]
