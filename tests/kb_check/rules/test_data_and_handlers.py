@@ -49,15 +49,13 @@ bpy.data.objects['Cube'].modifiers[0].operation = 'UNION'
 bpy.data.objects['Cube'].modifiers[0] = None
 """
 _RULES = ["wrong-type", "unknown-value", "list-attribute", "read-only", "not-subscriptable"]
-# Refused, but not for what it is.
-_LEFT = {35}
 
 
 def test_what_is_found_is_what_blender_refuses(rule_checker: Checker, tmp_path: Path) -> None:
     lines = _LINES.splitlines()
     refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
     found = rule_checker.check(_LINES, rules=_RULES)
-    assert [one.span.line for one in found] == [at for at in refused if at not in _LEFT]
+    assert [one.span.line for one in found] == refused
     assert len(refused) == 15
 
 
