@@ -15,11 +15,10 @@ from docutils.utils import DependencyList
 from kb_build.docutils_states import states_when_entered
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Generator, Iterator
+    from collections.abc import Callable, Generator, Iterable, Iterator
 
 _REFERENCES = (nodes.reference, nodes.footnote_reference, nodes.citation_reference)
-_FROM_ELSEWHERE = "from_elsewhere"
-# The classes of all nodes that were put into trees in this process.
+# The classes of all nodes that were put into the tree of the page at hand.
 _used: set[type[Node]] = set()
 
 
@@ -56,12 +55,11 @@ def _find(self: Node, cls: type[Node] | tuple[type[Node], ...]) -> Iterator[Node
     """This node and all below it that are of a class, in docutils' order.
 
     Without a generator for every node, through which all that is found below it would pass. Most passes over a page
-    look for what no page has had yet.
+    look for what it does not have.
     """
     if isinstance(self, cls):
         yield self
-    is_of_here = isinstance(self, nodes.document) and not hasattr(self, _FROM_ELSEWHERE)
-    if is_of_here and not any(issubclass(used, cls) for used in _used):
+    if isinstance(self, nodes.document) and not any(issubclass(used, cls) for used in _used):
         return
     levels = [iter(self.children)]
     while levels:
@@ -75,9 +73,15 @@ def _find(self: Node, cls: type[Node] | tuple[type[Node], ...]) -> Iterator[Node
             levels.pop()
 
 
-def from_elsewhere(document: nodes.document) -> None:
-    """Tells that a page's tree was put together by another process: what it has was not noted here."""
-    setattr(document, _FROM_ELSEWHERE, True)
+def begin_page(classes: Iterable[type[Node]] = ()) -> None:
+    """Tells that another page is at hand, and the classes of the nodes that its tree has already."""
+    _used.clear()
+    _used.update(classes)
+
+
+def classes_of_page() -> frozenset[type[Node]]:
+    """The classes of all nodes that were put into the tree of the page at hand."""
+    return frozenset(_used)
 
 
 def _set_up_child(self: Any, child: Any) -> None:

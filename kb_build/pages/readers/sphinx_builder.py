@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 from unittest import mock
 
 from docutils import nodes, utils
+from docutils.frontend import get_default_settings
+from docutils.parsers.rst import Parser
 from sphinx import addnodes
 from sphinx.builders import Builder
 from sphinx.environment.adapters.toctree import note_toctree
@@ -25,7 +27,7 @@ from kb_build.pages.readers import blender_markup
 from kb_build.pages.readers import markdown as md
 from kb_build.pages.readers.assemble import PageText
 from kb_build.pages.readers.doctree import PAGE_SCHEME, DoctreeReader
-from kb_build.pages.readers.docutils_speed import from_elsewhere
+from kb_build.pages.readers.docutils_speed import begin_page, classes_of_page
 from kb_build.pages.readers.workers import PageBudget, PageWork, ReadPages, read_apart
 from kb_build.symbols.records import Section
 
@@ -104,6 +106,12 @@ class CodeLanguages(HighlightLanguageTransform):
             super().apply(**given)
 
 
+def _parse_once() -> None:
+    """Has docutils put its patterns together before processes are forked, each of which would do that again."""
+    parser = Parser()
+    parser.parse("text", utils.new_document("", get_default_settings(parser)))
+
+
 class PagesBuilder(Builder):
     """Collects a :class:`PageText` for every page, in ``pages``; writes no pages.
 
@@ -154,6 +162,7 @@ class PagesBuilder(Builder):
         self._parse_all(docnames)
 
     def _parse_all(self, docnames: Sequence[str]) -> None:
+        _parse_once()
         for docname in docnames:
             self.env.clear_doc(docname)  # which also makes the tables that are merged later
         names = [name for name in docnames if name not in self.unread]
@@ -178,6 +187,7 @@ class PagesBuilder(Builder):
             self.env.titles[docname] = self.env.longtitles[docname] = title
 
     def _parse(self, docname: str) -> dict[str, list[str]]:
+        begin_page()
         try:
             self.read_doc(docname, _cache=False)
         except BaseException:
@@ -195,11 +205,12 @@ class PagesBuilder(Builder):
         """
         kept: Any = doctree
         kept.reporter = kept.transformer = kept.settings = None
-        self.trees[docname] = pickle.dumps(kept, pickle.HIGHEST_PROTOCOL)
+        self.trees[docname] = pickle.dumps((kept, classes_of_page()), pickle.HIGHEST_PROTOCOL)
 
     def _kept(self, docname: str) -> nodes.document:
-        doctree: nodes.document = pickle.loads(self.trees[docname])  # noqa: S301 - from a process of ours
-        from_elsewhere(doctree)
+        doctree: nodes.document
+        doctree, classes = pickle.loads(self.trees[docname])  # noqa: S301 - from a process of ours
+        begin_page(classes)
         doctree.settings = self._settings
         doctree.reporter = LoggingReporter(str(self.env.doc2path(docname)))
         return doctree

@@ -206,6 +206,25 @@ def test_two_processes_read_what_one_reads(tmp_path: Path) -> None:
     assert two[0].warnings == ("line 6: unknown role 'oops': its text is kept",)
 
 
+def test_what_a_page_has_is_found_whatever_the_pages_before_it_had(tmp_path: Path) -> None:
+    texts = {
+        "a": "Plain\n=====\n\nText.\n",
+        "b": "Noted\n=====\n\nText [#]_ of |version|.\n\n.. [#] A note.\n",
+        "c": "Other\n=====\n\n- See :doc:`b`.\n\n.. code-block:: none\n\n   code\n",
+        "d": "Again\n=====\n\nText [#]_ of |version|.\n\n.. [#] Another note.\n",
+    }
+    alone: dict[str, Page] = {}
+    (all_of_them := tmp_path / "together").mkdir()
+    for slug, text in texts.items():
+        (folder := tmp_path / slug).mkdir()
+        alone[slug] = read_one(folder, text, name=slug)
+        (all_of_them / f"{slug}.rst").write_text(text, encoding="utf-8")
+    together = {page.slug: page for page in read_rst(all_of_them, source="manual", version="5.1", jobs=1)}
+    for slug in ("a", "b", "d"):
+        assert together[slug].sections == alone[slug].sections
+    assert "See Noted" in together["c"].sections[0].text
+
+
 def test_progress_counts_up_to_the_whole(tmp_path: Path) -> None:
     for number in range(45):
         (tmp_path / f"page_{number}.rst").write_text(f"Page {number}\n=======\n")
