@@ -33,7 +33,7 @@ def properties(classes):
 
     @functools.cache
     def names(rna):
-        return {prop.identifier for prop in rna.properties}
+        return {*rna.properties.keys()}
 
     found = set()
     for path in classes:
