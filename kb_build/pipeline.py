@@ -134,8 +134,8 @@ def build(
         ahead.start()
         extract = _extract(work)
         ahead.join()
-        # While pages are read, one process reads scripts: what is left of that is done while the index is made.
-        with _script_usage(work, extract, jobs=1 if reader.is_reading else work.options.jobs) as scripts:
+        # The index needs pages first and scripts last: these are read while pages are, and while the index is made.
+        with _script_usage(work, extract) as scripts:
             pages = _pages(work, reader.result(), extract)
             run = _summaries(work, pages)
             meta = _meta(work, extract, pages, run) | {"fingerprint": fingerprint}
@@ -322,10 +322,8 @@ def _extract(work: _Build) -> Extract:
 
 
 @contextmanager
-def _script_usage(work: _Build, extract: Extract, *, jobs: int) -> Generator[Callable[[], ScriptUsage]]:
-    """Reads Blender's own scripts in ``jobs`` processes meanwhile; gives a function that waits for the uses of symbols
-    there.
-    """
+def _script_usage(work: _Build, extract: Extract) -> Generator[Callable[[], ScriptUsage]]:
+    """Reads Blender's own scripts meanwhile; gives a function that waits for the uses of symbols there."""
     from kb_build.usage.scripts import blender_scripts  # noqa: PLC0415 - not when nothing changed
     from kb_build.usage.usage_index import script_usage, usage_file  # noqa: PLC0415 - loaded ahead
 
@@ -333,6 +331,7 @@ def _script_usage(work: _Build, extract: Extract, *, jobs: int) -> Generator[Cal
     digests = Digests(cache_folder(work.home) / "digests.json")
     identity = f"{extract.version} {runtime_digest(work.runtime, digests)} {extractor_digest()}"
     file = usage_file(cache_folder(work.home), identity, scripts)
+    jobs = work.options.jobs
     with script_usage(extract.symbols, scripts, extract.version, file=file, jobs=jobs) as result:
         yield result
 

@@ -58,11 +58,6 @@ class PageReader:
         return self
 
     @property
-    def is_reading(self) -> bool:
-        """Whether another process has been reading pages."""
-        return self._messages is not None
-
-    @property
     def _unread(self) -> list[DocumentationSource]:
         return [source for source in self._sources if source.role not in self._pages]
 
