@@ -14,9 +14,8 @@ vert[bm.loops.layers.uv.active]  # reported: a layer of loops
 Settings.__annotations__["count"][1]  # reported: .keywords, since 2.93
 ```
 
-Reported too: what is assigned to an item of a collection, other than the materials of data, or by name, and items that
-are deleted; an index beyond a vector,
-or beyond the sockets of a node whose sockets are always the same. Not reported: names that may be there or not.
+Reported too: items of a collection that are deleted, or assigned to (materials are, by index); an index beyond a
+vector, or beyond the sockets of a node whose sockets are always the same. Not reported: names that may be there or not.
 """
 
 from __future__ import annotations
