@@ -120,8 +120,9 @@ _BUMPED_INTO = (
 )
 _IN_RADIANS = "Angles are in radians: `ob.rotation_euler.z = math.radians(90)`."
 _ONE_POINT = (
-    "A new spline has one point already: `spline.points.add(len(path) - 1)` makes as many as there are places in "
-    "`path`."
+    "A new spline has one point already: `spline.points.add(len(path) - 1)`, of a 'BEZIER' one "
+    "`spline.bezier_points.add(len(path) - 1)`, makes as many as there are places in `path`. A Bézier point's handles "
+    "stay at the origin until they have a type: `point.handle_left_type = point.handle_right_type = 'AUTO'`."
 )
 _BASIS = (
     "The first shape key is the one that the others are relative to, and its `value` changes nothing: "

@@ -639,9 +639,14 @@ def test_angles_in_degrees_are_told_to_be_radians(reader: BaseReader) -> None:
 def test_a_new_spline_has_a_point(reader: BaseReader) -> None:
     question = "how many points to add to a new spline"
     assert "`spline.points.add(len(path) - 1)`" in said(reader, f"{TYPES}SplinePoints.add", question)
+    of_bezier = said(reader, f"{TYPES}SplineBezierPoints.add", question)
+    assert "`spline.bezier_points.add(len(path) - 1)`" in of_bezier
     curve = bpy.data.curves.new("curve", "CURVE")
     for kind, points in (("POLY", "points"), ("NURBS", "points"), ("BEZIER", "bezier_points")):
         assert len(getattr(curve.splines.new(kind), points)) == 1
+    point = curve.splines[-1].bezier_points[0]
+    point.co = 1, 2, 3
+    assert tuple(point.handle_left) == (0, 0, 0)
 
 
 def test_the_value_of_the_first_shape_key_changes_nothing(reader: BaseReader) -> None:
