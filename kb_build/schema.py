@@ -227,6 +227,9 @@ def open_read_only(path: Path, *, threads: bool = False) -> sqlite3.Connection:
     try:
         _check(connection)
         connection.execute(_LITTLE_KEPT)
+    except sqlite3.Error as error:
+        connection.close()
+        raise NoBase(f"not readable as a knowledge base ({error})") from error
     except BaseException:
         connection.close()
         raise
@@ -234,13 +237,9 @@ def open_read_only(path: Path, *, threads: bool = False) -> sqlite3.Connection:
 
 
 def _check(connection: sqlite3.Connection) -> None:
-    try:
-        application, version = (
-            int(connection.execute(f"PRAGMA {name}").fetchone()[0])
-            for name in ("application_id", "user_version")
-        )
-    except sqlite3.Error as error:
-        raise NoBase(f"not readable as a knowledge base ({error})") from error
+    application, version = (
+        int(connection.execute(f"PRAGMA {name}").fetchone()[0]) for name in ("application_id", "user_version")
+    )
     if application != APPLICATION_ID:
         raise NoBase("an SQLite file, but not a knowledge base")
     if version > SCHEMA_VERSION:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 import shutil
 import sqlite3
 import threading
@@ -218,6 +219,14 @@ def test_a_base_cut_off_anywhere_never_answers_wrongly(copy: Path) -> None:
             refused.append(str(error))
     assert len(refused) >= 14
     assert all("--force" in said for said in refused)
+
+
+def test_a_damaged_list_of_tables_is_reported(copy: Path) -> None:
+    damaged = bytearray(copy.read_bytes())
+    damaged[100:108] = b"\xff" * 8  # behind the header, which alone tells that it is a base
+    copy.write_bytes(damaged)
+    with pytest.raises(BaseUnreadable, match=re.escape(str(copy))):
+        KnowledgeBase(copy)
 
 
 def test_damaged_pages_are_reported(copy: Path) -> None:
