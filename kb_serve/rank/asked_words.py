@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Set
+
 # Who says one of these asks what to call, not where to click.
 CODE_WORDS = frozenset(
     """addon api bpy callback code function headless loop method module numpy programmatically python script scripts
@@ -18,3 +23,8 @@ REMOVAL_WORDS = frozenset(
     """away clean clear cut delete deleted deleting detach discard drop empty erase forget free get hide kill lose off
     purge remove removed removes removing reset rid unassign unbake undo unlink wipe without""".split()  # noqa: SIM905
 )
+
+
+def wants_script(said: Set[str], script_words: Set[str] = SCRIPT_WORDS) -> bool:
+    """Whether who says these words wants a script, and speaks of no node: others do what the labels of nodes say."""
+    return NODE_WORDS.isdisjoint(said) and not script_words.isdisjoint(said)

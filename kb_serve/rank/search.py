@@ -16,7 +16,7 @@ import numpy as np
 from kb_build.index.analysis import stem, stems_of, words
 from kb_build.schema import DOCUMENT_KINDS
 from kb_build.symbols.api_names import NODE, OPERATORS
-from kb_serve.rank.asked_words import NODE_WORDS, SCRIPT_WORDS
+from kb_serve.rank.asked_words import wants_script
 from kb_serve.rank.inverted_index import InvertedIndex
 from kb_serve.rank.query_words import QueryWords
 from kb_serve.rank.scoring import Concept, said_phrases, score_all
@@ -143,8 +143,9 @@ class Searcher:
         texts = _float32(own + TOPIC_WEIGHT * around)
         best = best_first(texts, _CANDIDATES)
         numbers, texts, topic = numbers[best], texts[best], topic[best]
+        said = frozenset(words(text))
         evidence = Evidence(
-            frozenset(words(text)),
+            said,
             failed,
             texts,
             self._asked(concepts, numbers, topic),
@@ -153,22 +154,20 @@ class Searcher:
             units.chapters[numbers],
             units.kinds[numbers],
             self.index.symbols[numbers],
-            self._called(numbers, concepts, frozenset(words(text))),
+            self._called(numbers, concepts, with_nodes=not wants_script(said)),
         )
         return numbers, evidence
 
     def _called(
-        self, numbers: NDArray[np.intp], concepts: Sequence[Concept], said_words: Set[str]
+        self, numbers: NDArray[np.intp], concepts: Sequence[Concept], *, with_nodes: bool
     ) -> Scores | None:
         """The share of the query that the names of operators are, of some words, which the query says whole, and in
-        part that the labels of nodes are, and the names of members with their owners'; None if it says none.
-
-        Nodes are not called where a script is asked for and no node: others do what their labels say.
+        part that the labels of nodes are (``with_nodes``), and the names of members with their owners'; None if it says
+        none.
         """
         asked = {concept.stem: concept.idf for concept in concepts}
         said = frozenset(asked)
         kinds = said & _KINDS
-        with_nodes = SCRIPT_WORDS.isdisjoint(said_words) or not NODE_WORDS.isdisjoint(said_words)
         called: Scores | None = None
         units = self.index.levels[0]
         nearest = numbers[:_NEAREST]

@@ -96,17 +96,16 @@ _OF_EACH_CAMERA = (
     "`bpy.ops.render.render(write_still=True)`."
 )
 _PLACED = "In the world: `[ob.matrix_world @ vertex.co for vertex in ob.data.vertices]`, of the mesh without modifiers."
+_ALL_KEYS = (
+    "`ob.animation_data_clear()` removes all keyframes of an object, with its drivers and NLA tracks, and so for other "
+    "data (`ob.data`, `material.node_tree`)."
+)
+_ONE_KEY = '`ob.keyframe_delete("location", frame=10)`.'
 _UNKEYED = (
-    "`ob.animation_data_clear()` removes all keyframes of an object, with its drivers and NLA tracks, and so for other "
-    "data (`ob.data`, `material.node_tree`). The keys of one property are an F-Curve of the action's channelbag: "
-    '`bag.fcurves.remove(bag.fcurves.find("location", index=0))`; one key goes by '
-    '`ob.keyframe_delete("location", frame=10)`.'
+    f"{_ALL_KEYS} The keys of one property are an F-Curve of the action's channelbag: "
+    f'`bag.fcurves.remove(bag.fcurves.find("location", index=0))`; one key goes by {_ONE_KEY}'
 )
-_UNKEYED_IN_ACTION = (
-    "`ob.animation_data_clear()` removes all keyframes of an object, with its drivers and NLA tracks, and so for other "
-    "data (`ob.data`, `material.node_tree`). One key goes by "
-    '`ob.keyframe_delete("location", frame=10)`.'
-)
+_UNKEYED_IN_ACTION = f"{_ALL_KEYS} One key goes by {_ONE_KEY}"
 _LIMITED = (
     'Of a node\'s socket: `limits = socket.bl_rna.properties["default_value"]`, then `limits.hard_min`, `hard_max`, '
     "`soft_min` and `soft_max`, which are of its class; an input of a group has its own: "

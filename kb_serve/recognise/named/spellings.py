@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key
 from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT
 from kb_build.symbols.api_names import OPERATORS, TYPES
-from kb_serve.rank.asked_words import NODE_WORDS, SCRIPT_WORDS
+from kb_serve.rank.asked_words import SCRIPT_WORDS, wants_script
 from kb_serve.recognise.chains.chain_starts import PROPERTIES
 from kb_serve.recognise.message_patterns import is_message
 from kb_serve.recognise.named.addresses import find_page
@@ -223,8 +223,7 @@ class Spellings:
             if length < len(words)
         ]
         typed = frozenset(parts)
-        said = frozenset(map(str.lower, words))
-        for_a_script = NODE_WORDS.isdisjoint(said) and not _OF_SCRIPTS.isdisjoint(said)
+        for_a_script = wants_script(frozenset(map(str.lower, words)), _OF_SCRIPTS)
         # Looked up in memory: there are dozens in a question, and hardly ever a class is called so.
         # ``track to`` is a constraint, and so is ``copy location``; a modifier's name alone is mostly a plain word.
         parts += [f"{part} constraint" for part in parts]

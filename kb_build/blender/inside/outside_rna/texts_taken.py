@@ -8,6 +8,7 @@ import re
 
 import bpy
 
+from ..classes.rna import ancestry
 from .bmesh_operators import NO_VALUE
 from .keywords import instances
 
@@ -45,15 +46,12 @@ def listed(cls, function, given, named):
     return []
 
 
-def is_below(rna, cls):
-    """Whether a class is another one or below it, of which the reference lists the functions again."""
-    return rna is not None and (rna.identifier == cls or is_below(rna.base, cls))
-
-
 def find_all(write, structs):
-    """One ``texts_taken`` record for each argument, with its ``items``, of each class that has it."""
+    """One ``texts_taken`` record for each argument, with its ``items``, of each class that has it: of those below one
+    the reference lists the functions again.
+    """
     for cls, function, argument, given, named in CALLS:
         items = listed(cls, function, given, named)
         for own, rna in structs.items() if items else ():
-            if is_below(rna, cls):
+            if cls in ancestry(rna):
                 write("texts_taken", path=f"bpy.types.{own}.{function}", argument=argument, items=items)
