@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 from agents.plan.arithmetic import DOUBTED, doubts_of
 from agents.plan.check import read_plan
 from agents.plan.edit import EditPlan, unknown_targets
+from agents.plan.faults import grouped
 from agents.plan.scene import ScenePlan
 from agents.plan.tactical import Decision, FilmDecision, TacticalPlan
 from agents.roles.base import Conversation, plan_json
@@ -209,7 +210,7 @@ class _PlanReader:
             return None, ["The plan is a JSON object."]
         plan, faults = read_plan(data)
         if plan is None or self._told:
-            return plan, faults
+            return plan, grouped(faults)
         doubts = doubts_of(plan)
         if not doubts:
             return plan, []

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import mcp_types as types
 
 from agents.plan.arithmetic import DOUBTED, doubts_of
+from agents.plan.faults import grouped
 from agents.plan.part import STAGES
 from agents.plan.scene import ScenePlan
 from agents.protocol.report.text_format import fold_names, format_rule_ids
@@ -100,6 +101,7 @@ def _as_json(fault: Fault) -> dict[str, str]:
 
 
 def _fault_text(faults: list[Fault]) -> str:
+    faults = grouped(faults)
     count = len(faults)
     lines = [f"- `{fault.path or 'plan'}`: {fault.message}" for fault in faults[:_LISTED_FAULTS]]
     lines += [f"- … and {count - _LISTED_FAULTS} more"] if count > _LISTED_FAULTS else []

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from agents.plan.check import read_plan
+from agents.plan.faults import Fault, grouped
 
 CHAIR = {"dimensions": [0.5, 0.5, 0.9], "position": [0, 0, 0]}
 
@@ -306,3 +307,10 @@ def test_invalid_text_gives_faults(text: Any) -> None:
     assert plan is None
     assert faults
     assert all(len(str(fault)) < 1000 for fault in faults)
+
+
+def test_what_is_wrong_in_several_places_is_told_once() -> None:
+    faults = [Fault("a.size", "Too large."), Fault("b", "Missing."), Fault("c.size", "Too large.")]
+    assert list(map(str, grouped(faults))) == ["a.size, c.size: Too large.", "b: Missing."]
+    many = grouped([Fault(f"relations[{number}]", "Unknown.") for number in range(15)])
+    assert [fault.path.partition(" and ")[2] for fault in many] == ["3 more"]
