@@ -90,6 +90,7 @@ ORDERS = {
             "hit_lines",
             "hit_blocks",
             "query_text",
+            "question_frame",
             "hit_answers",
             "known",
             "docs_answer",

@@ -21,6 +21,7 @@ from kb_serve.answer.hit_lines import HitLines
 from kb_serve.answer.hits import hits_of
 from kb_serve.answer.known.practice import Practice
 from kb_serve.answer.query_text import in_one_line, is_plain
+from kb_serve.answer.question_frame import without_frame
 from kb_serve.answer.render import MarkdownRenderer
 from kb_serve.answer.said_twice import is_said
 from kb_serve.answer.topic.overview import STEPS, Topics
@@ -88,6 +89,7 @@ class AnswerComposer:
 
     def _make_draft(self, text: str, limit: int, told: Sequence[str]) -> Draft:
         """The answer to a text of whose code ``told`` is said as well."""
+        text = without_frame(text)
         ranking = self._ranker.rank(text, limit)
         ranking.notes = [note for note in ranking.notes if not is_said(note, told)]
         if version := version_asked_about(text, self._reader):

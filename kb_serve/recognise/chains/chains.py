@@ -6,6 +6,8 @@ import builtins
 import re
 from typing import Literal, NamedTuple
 
+from kb_build.index.analysis import STOP_WORDS
+
 _BUILTINS = frozenset(dir(builtins))
 MAX_QUERY = 4_000
 MOST_CODE = 12  # expressions of a text that are read
@@ -14,12 +16,15 @@ _MAX_BUILTINS = 12
 _MAX_VALUES = 8
 _NO_WORD = re.compile(r"[.:>→(\[='\"]")  # what makes more of a name than a word
 _HUMP = re.compile(r"[a-z0-9][A-Z]")
+_CODE = re.compile(rf"[_.(\[]|->|→|::|{_HUMP.pattern}")
 _IDENTIFIER = re.compile(r"(?<!\w)[^\W\d]\w*")  # not what follows the digit of ``3D_POLYLINE``
 # An arrow leads to a member too, but not to what a line came to: ``ob.data -> None``, ``→ IndexError``.
 _OUTCOME = (
     r"\w*(?:Error|Exception|Warning)\b|None\b|True\b|False\b|(?:list|dict|tuple|set|str|int|float|bool)\b"
 )
-_DOT = re.compile(rf"\s*(?:\.|::|(?:->|→)(?!\s*(?:{_OUTCOME})))\s*(?=[^\W\d])")
+_DOT = re.compile(rf"(?:\.|\s+\.\s+|\s*::\s*|(?:->|→)(?!{_OUTCOME}))(?=[^\W\d])")
+# Code alone has a blank there: a sentence ends with a dot before one, and words have arrows between them, too.
+_DOT_OF_CODE = re.compile(rf"\s+\.(?=[^\W\d])|\s*(?:->|→)\s*(?!{_OUTCOME})(?=[^\W\d])")
 _ASSIGNMENT = re.compile(r"\s*[-+*/|&^%]?=(?!=)")
 _VALUE = re.compile(r"\s*(?:[-+*/|&^%=!]?=|not\s+in\b|in\b)\s*(?=['\"{(\[])")
 _NUMBER = r"-?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
@@ -129,11 +134,14 @@ def _bracket(text: str, start: int) -> tuple[str, int]:
     return text[start + 1 :], len(text)
 
 
-def _step(text: str, position: int) -> tuple[ChainStep, int] | None:
-    dot = _DOT.match(text, position)
+def _step(text: str, start: int, position: int) -> tuple[ChainStep, int] | None:
+    """The step at a place of an expression that began at ``start``, and where it ends."""
+    dot = _DOT.match(text, position) or _dot_of_code(text, start, position)
     if dot:
         name = _IDENTIFIER.match(text, dot.end())
-        return (ChainStep("attr", name.group()), name.end()) if name else None
+        if name is None or (_begins_sentence(name[0]) and not _CODE.search(text, start, position)):
+            return None
+        return ChainStep("attr", name[0]), name.end()
     if position < len(text) and text[position] in _CLOSING:
         content, end = _bracket(text, position)
         if text[position] == "(":
@@ -141,6 +149,20 @@ def _step(text: str, position: int) -> tuple[ChainStep, int] | None:
         quoted = _QUOTED.match(content)
         return (ChainStep("key", quoted.group(2)) if quoted else ChainStep("index", content.strip())), end
     return None
+
+
+def _begins_sentence(name: str) -> bool:
+    """Whether a name is a word with which sentences begin: ``a camera.How do I``."""
+    return name.istitle() and name.lower() in STOP_WORDS
+
+
+def _dot_of_code(text: str, start: int, position: int) -> re.Match[str] | None:
+    """A dot or an arrow beside a blank, where one of the names on its sides is no word of prose."""
+    dot = _DOT_OF_CODE.match(text, position)
+    if dot is None or _CODE.search(text, start, position):
+        return dot
+    name = _IDENTIFIER.match(text, dot.end())
+    return dot if name is not None and dot[0].strip() != "." and _CODE.search(name[0]) else None
 
 
 def _values(text: str, position: int) -> tuple[str, ...]:
@@ -181,7 +203,7 @@ def find_chains(text: str) -> list[Chain]:
     while match := _IDENTIFIER.search(text, position):
         start, position = match.span()
         steps: list[ChainStep] = []
-        while len(steps) < MAX_STEPS and (taken := _step(text, position)):
+        while len(steps) < MAX_STEPS and (taken := _step(text, start, position)):
             step, position = taken
             steps.append(step)
         assigned = _ASSIGNMENT.match(text, position) is not None

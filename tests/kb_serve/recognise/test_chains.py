@@ -23,6 +23,8 @@ def steps(text: str) -> list[tuple[str, str]]:
         ("obj.name", "obj", [("attr", "name")]),
         ("obj . name", "obj", [("attr", "name")]),
         ("obj->name", "obj", [("attr", "name")]),
+        ("a.b .c", "a", [("attr", "b"), ("attr", "c")]),
+        ("Settings -> use_x", "Settings", [("attr", "use_x")]),
         ("Obj::name", "Obj", [("attr", "name")]),
         ('a["Key"]', "a", [("key", "Key")]),
         ("a['Key']", "a", [("key", "Key")]),
@@ -68,6 +70,15 @@ def test_the_dotted_part_ends_at_the_first_call_or_index() -> None:
 
 def test_a_full_stop_between_sentences_is_no_attribute() -> None:
     assert [chain.steps for chain in find_chains("It is a cube. 3 faces")] == [()] * 5
+    for text in ("Add a camera. Then render", "a camera.How do I", "ob.  it moves", "a sphere.\nplease help"):
+        assert not any(chain.steps for chain in find_chains(text)), text
+    (chain,) = (one for one in find_chains("Set ob.location. Then render.") if one.steps)
+    assert chain.source == "ob.location"
+
+
+@pytest.mark.parametrize("text", ["save as .blend file", "noise texture -> color ramp", "Texture → Color"])
+def test_neither_an_ending_nor_an_arrow_between_words_leads_to_a_member(text: str) -> None:
+    assert not any(chain.steps for chain in find_chains(text))
 
 
 @pytest.mark.parametrize(
