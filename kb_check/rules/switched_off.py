@@ -112,7 +112,7 @@ def _is_otherwise(script: Script, path: str, row: SettingCondition) -> bool:
     gate = script.api.symbols.symbol(row.gate)
     if gate is None or not script.names.reader.descends(path.rpartition(".")[0], gate.owner):
         return False
-    values = [new.value for new in gate.new_values] or [usual_default(gate)]
+    values = [usual_default(gate), *(new.value for new in gate.new_values)]
     return COMPARED in gate.flags and all(is_contrary(row, gate, value) for value in values)
 
 

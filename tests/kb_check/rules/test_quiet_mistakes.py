@@ -226,6 +226,11 @@ def test_settings_of_modifiers_without_an_effect_are_found(
     assert rule_checker.check("\n".join(lines), rules=["switched-off"]) == []
 
 
+def test_what_another_setting_changes_is_as_usual_without_that(check: Check) -> None:
+    code = "import bpy\nglass = bpy.data.materials.new('Glass')\nglass.use_raytrace_refraction = True\n"
+    assert check("switched-off", code) == []
+
+
 @pytest.mark.parametrize(
     "code",
     [
