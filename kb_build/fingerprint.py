@@ -86,7 +86,11 @@ def usage_digest() -> str:
 @cache
 def code_digest() -> str:
     """Digest of the code, packages and data that shape a base."""
-    data = [path.read_bytes() for name in ("words", "summaries") for path in sorted((_DATA / name).glob("*"))]
+    data = [
+        path.read_bytes()
+        for name in ("recipes", "summaries", "words")
+        for path in sorted((_DATA / name).glob("*"))
+    ]
     return _digest(
         [extractor_digest(), _modules("kb_build.pipeline"), _versions((*_READERS, *_WRITERS)), *data]
     )

@@ -144,6 +144,7 @@ def build(
                 beside(partial(_symbol_tables, extract, pages, scripts)) as tables,
             ):
                 from kb_build.blender.buttons import operator_buttons  # noqa: PLC0415 - not when nothing changed
+                from kb_build.recipes.tables import recipes_for  # noqa: PLC0415 - likewise
                 from kb_build.store import Contents, write_base  # noqa: PLC0415 - likewise
 
                 work.progress(f"Writing {work.path.name}", 0, None)
@@ -157,6 +158,7 @@ def build(
                     removed_symbols=removed_symbols,
                     tables=tables,
                     buttons=operator_buttons(Path(extract.scripts)) if extract.scripts else {},
+                    recipes=recipes_for(meta["minor"]),
                 )
                 write_base(work.path, contents)
     return _report(work, began, meta, built=True, run=run)

@@ -16,7 +16,7 @@ from urllib.parse import quote
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCHEMA_VERSION = 18
+SCHEMA_VERSION = 19
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's field for the application a file belongs to
 
 # How a key came about, in the order in which an answer prefers them.
@@ -191,6 +191,16 @@ CREATE TABLE phrases (targets BLOB NOT NULL);
 -- of all that do as uint32, and for each its weight as float16 (see kb_build.index.postings).
 CREATE TABLE postings (stem TEXT NOT NULL UNIQUE, units INTEGER NOT NULL, data BLOB NOT NULL);
 
+-- The lines of Python that do a common task: what it is, what the names in them stand for, and how many phrases ask for
+-- it. The phrases of all recipes are numbered through: for each of their stems, and those of the code, how rare it is
+-- among the units (idf), the phrases that have it and the recipes that do (uint16).
+CREATE TABLE recipes (
+    number INTEGER PRIMARY KEY, title TEXT NOT NULL, takes TEXT NOT NULL, code TEXT NOT NULL, phrases INTEGER NOT NULL
+);
+CREATE TABLE recipe_words (
+    stem TEXT PRIMARY KEY, rarity REAL NOT NULL, phrases BLOB NOT NULL, recipes BLOB NOT NULL
+) WITHOUT ROWID;
+
 -- The corpus' words: stem and most used spelling.
 CREATE TABLE vocabulary (stem TEXT PRIMARY KEY, word TEXT NOT NULL) WITHOUT ROWID;
 """
@@ -203,6 +213,7 @@ CREATE INDEX symbols_collection ON symbols (collection) WHERE collection != '';
 CREATE INDEX symbols_base ON symbols (base) WHERE base != '';
 CREATE INDEX setting_conditions_gate ON setting_conditions (gate);
 CREATE INDEX removed_name ON removed (name);
+CREATE INDEX successors_target ON successors (target);
 CREATE INDEX sections_slug ON sections (slug, position);
 CREATE INDEX pages_parent ON pages (parent, position);
 """

@@ -34,6 +34,7 @@ from kb_build.index.query_expansions import load_query_expansions, page_expansio
 from kb_build.index.stem_numbers import StemNumbers
 from kb_build.index.value_names import find_value_names
 from kb_build.index.weights import symbol_weights
+from kb_build.recipes.rows import recipe_rows, recipe_words
 from kb_build.schema import (
     APPLICATION_ID,
     DDL,
@@ -54,6 +55,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kb_build.blender.buttons import Button
+    from kb_build.recipes.tables import Recipe
     from kb_build.summaries.types import PageSummary
     from kb_build.usage.examples import Uses
 
@@ -80,6 +82,7 @@ class Contents:
     still_works: Sequence[tuple[str, str]] = ()
     tables: Callable[[], SymbolTables] | None = None
     buttons: Mapping[str, Sequence[Button]] = field(default_factory=dict[str, "Sequence[Button]"])
+    recipes: Sequence[Recipe] = ()
 
 
 def _insert(
@@ -212,9 +215,12 @@ def _phrases(
 
 
 def write_index(
-    connection: sqlite3.Connection, units: Sequence[Document], expansions: Mapping[str, str]
+    connection: sqlite3.Connection,
+    units: Sequence[Document],
+    expansions: Mapping[str, str],
+    recipes: Sequence[Recipe] = (),
 ) -> None:
-    """Writes what retrieval reads: the units, the topics around them, and the phrases that lead to either."""
+    """Writes what retrieval reads: the units, the topics around them, the phrases that lead to either, the recipes."""
     topics = [*topic_documents(units)]
     numbers = {topic.ref: number for number, topic in enumerate(topics)}
     stems = StemNumbers()
@@ -228,6 +234,8 @@ def write_index(
     phrases = [*_phrases(units, topics, targets, expansions)]
     leads_to, of_phrases = phrase_postings(phrases, len(units), of_units, stems)
     connection.execute("INSERT INTO phrases VALUES (?)", (array("i", leads_to).tobytes(),))
+    _insert(connection, "recipes", recipe_rows(recipes), 5)
+    _insert(connection, "recipe_words", recipe_words(recipes, of_units, len(units)), 4)
     words = unknown_of(load_everyday_words(), of_units)
     for postings in (of_units, of_topics):
         lend(postings, words)
@@ -272,7 +280,7 @@ def _write(part: Path, contents: Contents) -> None:
         units = make_units(symbols, pages, contents.links, contents.summaries, expansions, passages)
         with connection:
             _write_pages(connection, contents.pages, contents.summaries)
-            write_index(connection, units, expansions)
+            write_index(connection, units, expansions, contents.recipes)
             _write_removed_symbols(connection, removed_symbols())
             _insert(connection, "still_works", contents.still_works, 2)
             _insert(connection, "refusals", _refusals(contents.symbols), 2)

@@ -26,6 +26,7 @@ PARTS = (
     *(
         "retrieval",
         "names",
+        "recipes",
         "compound",
         "invented",
         "defaults",

@@ -19,6 +19,7 @@ from kb_serve.answer.hit_answers import HitAnswers
 from kb_serve.answer.hit_blocks import HitBlocks
 from kb_serve.answer.hit_lines import HitLines
 from kb_serve.answer.hits import hits_of
+from kb_serve.answer.known.asked_recipe import AskedRecipes
 from kb_serve.answer.known.practice import Practice
 from kb_serve.answer.query_text import in_one_line, is_plain
 from kb_serve.answer.question_frame import without_frame
@@ -29,6 +30,7 @@ from kb_serve.errors import BadQuery
 from kb_serve.query_limits import LEAST_TOKENS, LIMIT, MAX_LIMIT
 from kb_serve.rank.merging import SURE, QueryRanker, Ranking
 from kb_serve.rank.ranked_id import RankedId
+from kb_serve.recognise.message_patterns import is_message
 from kb_serve.recognise.several import parts_of
 
 if TYPE_CHECKING:
@@ -40,6 +42,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.several import QuestionPart
 
+_LEAST_PROSE = 3  # words of a question that may ask for a task
 _KNOWN_OF = 3  # hits for a description among which what one has to know of them is looked for
 _NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
 _KNOWN_OF_A_PART = 1
@@ -62,6 +65,7 @@ class AnswerComposer:
         self._told = HitAnswers(reader, renderer, self._lines, self._blocks)
         self._topics = Topics(reader)
         self._practice = Practice(reader)
+        self._recipes = AskedRecipes(reader)
         self._members = AskedMembers(reader)
         self._draft = lru_cache(maxsize=16)(self._draft_with_notes)
 
@@ -101,7 +105,7 @@ class AnswerComposer:
         names = [match for match in ranking.recognition.matches if match.sure >= SURE]
         is_named = ranking.named or any(match.why != "enum item" for match in names)
         if not is_named and (parts := parts_of(text)):
-            return self._answer_each(parts, ranking, limit)
+            return self._answer_each(parts, ranking, limit, [*self._recipe(text)])
         rows = self._listed(ranking, limit)
         hits = hits_of(rows, self._reader)
         known = (
@@ -124,7 +128,14 @@ class AnswerComposer:
             names = ranking.recognition.arguments.get(hits[0].id, ())
             kind = "page" if hits[0].is_page else "schema"
             blocks = self._told.named(hits, rows, text, names, members)
-        return draft_of(kind, hits, notes, blocks)
+        return draft_of(kind, hits, notes, (*self._recipe(text), *blocks))
+
+    def _recipe(self, text: str) -> Iterator[AnswerBlock]:
+        """The few lines that do the task of a question in plain words."""
+        if not is_message(text) and sum(map(str.isalpha, text.split())) >= _LEAST_PROSE:
+            concepts = self._ranker.searcher.words.concepts(text)
+            if recipe := self._recipes.text(concepts):
+                yield AnswerBlock(recipe, "recipe")
 
     def _changes(self, version: str, limit: int) -> Draft:
         """What a version changed as a whole."""
@@ -184,9 +195,13 @@ class AnswerComposer:
         blocks = self._told.compared(hits, rows, asked, members, len(meant))
         return draft_of("candidates", hits, notes, blocks)
 
-    def _answer_each(self, parts: Sequence[QuestionPart], ranking: Ranking, limit: int) -> Draft:
-        """The names and the page for each part of a question, in brief, and the first of what one has to know of it."""
-        blocks: list[AnswerBlock] = []
+    def _answer_each(
+        self, parts: Sequence[QuestionPart], ranking: Ranking, limit: int, recipe: Sequence[AnswerBlock]
+    ) -> Draft:
+        """The names and the page for each part of a question, in brief, and the first of what one has to know of it:
+        behind the ``recipe`` for all of it, if there is one, or else each behind its own.
+        """
+        blocks = [*recipe]
         found: list[list[RankedId]] = []
         for number, part in enumerate(parts, 1):
             told = {row.id for rows in found for row in rows}
@@ -199,7 +214,8 @@ class AnswerComposer:
             lines = [f"- {self._lines.line(hits[place], rows[place])}" for place in chosen]
             first = [hits[place] for place in chosen[:1]]
             known = [*self._known(first, part.asked, is_named=False)][:_KNOWN_OF_A_PART]
-            lines = [*self._topics.first_steps(part.topic, _STEPS_OF_A_PART), *known, *lines]
+            own = () if recipe else (block.text for block in self._recipe(part.asked))
+            lines = [*own, *self._topics.first_steps(part.topic, _STEPS_OF_A_PART), *known, *lines]
             blocks.append(AnswerBlock("\n".join((f"**{number}. {part.text}**", *lines)), part.text))
             found.append([rows[place] for place in sorted(chosen)])
         # In turns, as each part is one of several answers.

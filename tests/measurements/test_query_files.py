@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 # Lines of old scripts are judged by what they say is gone (measurements/old_code.py, history.py), questions for several
-# names by all of them (compound.py), not by ids.
-_OTHERWISE = {"old_code", "removed", "compound", "compound_kept"}
+# names by all of them (compound.py), tasks by what code needs (recipes.py), not by ids.
+_OTHERWISE = {"old_code", "removed", "compound", "compound_kept", "tasks", "tasks_kept"}
 SETS = sorted(path for path in QUERIES.glob("*.jsonl") if path.stem not in _OTHERWISE)
 
 

@@ -27,19 +27,9 @@ _WEIGHTED = (
     "`attribute.data[edge.index].value = 1.0`; in a BMesh, before its edges are taken, "
     '`layer = bm.edges.layers.float.get("{1}") or bm.edges.layers.float.new("{1}")`, `edge[layer] = 1.0`.'
 )
-_TURNED = (
-    'An environment is turned by a Mapping node: `mapping = nodes.new("ShaderNodeMapping")`, '
-    '`links.new(nodes.new("ShaderNodeTexCoord").outputs["Generated"], mapping.inputs["Vector"])`, '
-    '`links.new(mapping.outputs["Vector"], environment.inputs["Vector"])`, '
-    '`mapping.inputs["Rotation"].default_value[2] = math.radians(90)`.'
-)
 _APPLIED = (
     "Without an operator: `ob.data.transform(ob.matrix_basis)`, then `ob.matrix_basis.identity()`; data that other "
     "objects share changes for them, too."
-)
-_AIMED = (
-    "A camera looks along its -Z: "
-    "`camera.rotation_euler = (target - camera.location).to_track_quat('-Z', 'Y').to_euler()`."
 )
 _APART = (
     "`(a.matrix_world.translation - b.matrix_world.translation).length` is how far apart two objects are."
@@ -51,11 +41,6 @@ _NORMAL = (
 )
 _ROTATED = (
     "Around an axis of the world, in place: `ob.rotation_euler.rotate(Matrix.Rotation(angle, 3, 'Z'))`."
-)
-_BY_TYPE = (
-    "By its type, whatever its name is: "
-    '`next(n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeBsdfPrincipled")`; `n.type` of it is '
-    "'BSDF_PRINCIPLED'."
 )
 _CHOSEN = (
     "`bpy.context.selected_objects` is a list of them, `bpy.context.view_layer.objects.selected` has the same: "
@@ -72,28 +57,10 @@ _IN_SIDEBAR = (
     '`def draw(self, context): self.layout.operator("object.delete")`, where a button calls an operator; '
     "`bpy.utils.register_class(MINE_PT_panel)` shows it."
 )
-_SEEN_THROUGH = (
-    'What is seen through it is up to its shader: `bsdf.inputs["Alpha"].default_value = 0.3`, of the Principled BSDF. '
-    "EEVEE dithers that, unless `material.surface_render_method = 'BLENDED'`."
-)
-_LIT = (
-    "A picture around the scene: `nodes, links = world.node_tree.nodes, world.node_tree.links`, "
-    '`environment = nodes.new("ShaderNodeTexEnvironment")`, `environment.image = bpy.data.images.load(path)`, '
-    '`links.new(environment.outputs["Color"], nodes["Background"].inputs["Color"])`.'
-)
-_DRAWN = (
-    '`drawing = pencil.layers.new("Lines").frames.new(1).drawing`, of the object\'s data, `drawing.add_strokes([4])` '
-    "makes a stroke of four points, `drawing.strokes[0].points[0].position = (0, 0, 1)` and so on places them."
-)
 _ORIGIN = (
     "`bpy.ops.object.origin_set(type='ORIGIN_GEOMETRY')` brings the origins of the selected objects into their middle, "
     "with 'ORIGIN_CURSOR' to the 3D cursor. Without an operator, to `place` in the object's own space: "
     "`ob.data.transform(Matrix.Translation(-place))`, `ob.matrix_world.translation = ob.matrix_world @ place`."
-)
-_OF_EACH_CAMERA = (
-    "From each camera: `for camera in [ob for ob in scene.objects if ob.type == 'CAMERA']:`, and in it "
-    '`scene.camera = camera`, `scene.render.filepath = f"/folder/{camera.name}.png"`, '
-    "`bpy.ops.render.render(write_still=True)`."
 )
 _PLACED = "In the world: `[ob.matrix_world @ vertex.co for vertex in ob.data.vertices]`, of the mesh without modifiers."
 _ALL_KEYS = (
@@ -157,15 +124,6 @@ RECIPES: tuple[Advice, ...] = (
         _OF_TYPE,
         wherever=(stems("select"), stems("all every"), _OBJECTS, stems("type")),
         unless=stems("bone collection material menu node"),
-    ),
-    Advice(
-        _OF_EACH_CAMERA,
-        wherever=(
-            stems("camera cameras"),
-            stems("all angles different each every loop multiple several various views"),
-            stems("render rendering renders"),
-        ),
-        unless=stems("animate lens marker markers panorama stereo viewport"),
     ),
     Advice(
         _PLACED,
@@ -244,22 +202,12 @@ RECIPES: tuple[Advice, ...] = (
         since=(4, 0),
     ),
     Advice(
-        _TURNED,
-        wherever=(stems("environment hdr hdri"), stems("rotate rotation turn")),
-        unless=stems("viewport studio preview"),
-    ),
-    Advice(
         _APPLIED,
         wherever=(
             stems("apply"),
             stems("rotation scale transform transforms"),
             stems("operator without"),
         ),
-    ),
-    Advice(
-        _AIMED,
-        wherever=(stems("camera"), stems("aim look point"), stems("at target")),
-        unless=stems("constraint follow keep track"),
     ),
     Advice(
         _APART,
@@ -276,9 +224,6 @@ RECIPES: tuple[Advice, ...] = (
         _ROTATED,
         wherever=(stems("rotate turn"), stems("axis"), stems("global world")),
         unless=stems("bone hdri"),
-    ),
-    Advice(
-        _BY_TYPE, wherever=(stems("find get look"), stems("node"), stems("type")), unless=stems("geometry")
     ),
     Advice(
         _CHOSEN,
@@ -304,39 +249,6 @@ RECIPES: tuple[Advice, ...] = (
         _IN_SIDEBAR,
         wherever=(stems("sidebar"), stems("add button create make new panel put register script")),
         unless=stems("category hide image node open sequencer show toggle width"),
-    ),
-    Advice(
-        _SEEN_THROUGH,
-        wherever=(stems("material materials shader"), stems("transparent transparency")),
-        unless=stems(
-            "backface background bake cutout film freestyle glass gpencil image layers light line mix node outline "
-            "pencil png refractive shadow shadows showing texture vertex viewport wireframe wrapper"
-        ),
-        since=(4, 2),
-    ),
-    Advice(
-        _LIT,
-        wherever=(
-            stems("environment hdr hdri"),
-            stems("add background light lighting load set setup use world"),
-        ),
-        unless=stems(
-            "bake camera coordinates dim export flat format generated group hide intensity keep lookdev noisy output "
-            "pass path portal preview projection rotate rotation save strength studio switch turn viewport visible"
-        ),
-        since=(5, 0),
-    ),
-    Advice(
-        _DRAWN,
-        wherever=(
-            stems("gpencil grease pencil"),
-            stems("stroke strokes"),
-            stems("add create draw make new python script"),
-        ),
-        unless=stems(
-            "annotation attribute bezier brush curve delete fill material modifier remove select weight"
-        ),
-        since=(4, 3),
     ),
     Advice(
         _ORIGIN,

@@ -12,7 +12,6 @@ from kb_serve.answer.known.recipes import RECIPES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from pathlib import Path
 
     from kb_serve.knowledge_base import KnowledgeBase
 
@@ -115,15 +114,6 @@ def test_what_an_edge_weighs_is_an_attribute(question: str, name: str, kb: Knowl
     assert mesh.attributes[name].data[3].value == 1.0
 
 
-def test_an_environment_is_turned_by_a_mapping(kb: KnowledgeBase) -> None:
-    tree = bpy.data.worlds["World"].node_tree
-    environment = tree.nodes.new("ShaderNodeTexEnvironment")
-    text = told(kb, "world hdri rotation")
-    mapping = run(text, nodes=tree.nodes, links=tree.links, environment=environment)["mapping"]
-    assert mapping.inputs["Rotation"].default_value.z == pytest.approx(math.pi / 2)
-    assert environment.inputs["Vector"].links[0].from_node == mapping
-
-
 def corners(ob: Any) -> list[float]:
     updated()
     return [number for vertex in ob.data.vertices for number in ob.matrix_world @ vertex.co]
@@ -136,14 +126,6 @@ def test_what_is_applied_stays_where_it_is(kb: KnowledgeBase) -> None:
     run(told(kb, "apply scale and rotation without operator"), ob=ob)
     assert corners(ob) == pytest.approx(before, abs=1e-5)
     assert tuple(ob.scale) == (1, 1, 1)
-
-
-def test_a_camera_looks_at_a_point(kb: KnowledgeBase) -> None:
-    camera, target = bpy.data.objects["Camera"], Vector((1, 2, 3))
-    run(told(kb, "camera look at a point"), camera=camera, target=target)
-    updated()
-    seen = camera.matrix_world.to_3x3() @ Vector((0, 0, -1))
-    assert tuple(seen) == pytest.approx(tuple((target - camera.location).normalized()), abs=1e-5)
 
 
 def value(text: str, **names: Any) -> Any:
@@ -183,13 +165,6 @@ def test_a_turn_around_the_worlds_axis_leaves_the_place(kb: KnowledgeBase) -> No
     assert tuple(ob.location) == (1, 2, 3)
 
 
-def test_a_node_is_found_by_its_type(kb: KnowledgeBase) -> None:
-    material = bpy.data.materials["Material"]
-    material.node_tree.nodes["Principled BSDF"].name = "other"
-    found = value(told(kb, "get node by type in a material"), material=material)
-    assert (found.name, found.type) == ("other", "BSDF_PRINCIPLED")
-
-
 def test_the_selected_objects_are_listed(kb: KnowledgeBase) -> None:
     cube().select_set(True)
     text = told(kb, "how do I get all selected objects")
@@ -217,32 +192,6 @@ def test_a_panel_is_put_into_the_sidebar(kb: KnowledgeBase) -> None:
     exec(register, held)
     assert bpy.types.MINE_PT_panel.bl_category == "My Tab"
     bpy.utils.unregister_class(held["MINE_PT_panel"])
-
-
-def test_a_material_is_seen_through(kb: KnowledgeBase) -> None:
-    material = bpy.data.materials["Material"]
-    bsdf = material.node_tree.nodes["Principled BSDF"]
-    run(told(kb, "how to make a material transparent in eevee"), material=material, bsdf=bsdf)
-    assert bsdf.inputs["Alpha"].default_value == pytest.approx(0.3)
-    assert (material.surface_render_method, material.blend_method) == ("BLENDED", "BLEND")
-
-
-def test_a_picture_lights_the_world(kb: KnowledgeBase, tmp_path: Path) -> None:
-    image, world = bpy.data.images.new("sky", 8, 4), bpy.data.worlds.new("new")
-    image.filepath_raw, image.file_format = str(tmp_path / "sky.png"), "PNG"
-    image.save()
-    environment = run(told(kb, "how do I load an HDRI as environment"), world=world, path=image.filepath_raw)[
-        "environment"
-    ]
-    assert environment.image.size[:] == (8, 4)
-    assert environment.outputs["Color"].links[0].to_node.name == "Background"
-
-
-def test_a_stroke_is_drawn(kb: KnowledgeBase) -> None:
-    pencil = bpy.data.grease_pencils.new("pencil")
-    drawing = run(told(kb, "grease pencil add stroke python"), pencil=pencil)["drawing"]
-    assert [len(stroke.points) for stroke in drawing.strokes] == [4]
-    assert tuple(drawing.strokes[0].points[0].position) == (0, 0, 1)
 
 
 def test_an_origin_moves_and_what_is_seen_stays(kb: KnowledgeBase) -> None:
@@ -276,20 +225,6 @@ def test_an_origin_moves_and_what_is_seen_stays(kb: KnowledgeBase) -> None:
 )
 def test_a_question_of_something_else_is_told_none(question: str, kb: KnowledgeBase) -> None:
     assert not {recipe.text for recipe in RECIPES}.intersection(kb.query(question).notes)
-
-
-def test_each_camera_renders_its_own_file(kb: KnowledgeBase, tmp_path: Path) -> None:
-    text = told(kb, "render from several cameras in a loop and save each image")
-    scene = bpy.context.scene
-    other = bpy.data.objects["Camera"].copy()
-    scene.collection.objects.link(other)
-    scene.render.engine = "BLENDER_WORKBENCH" if not bpy.app.background else "CYCLES"
-    scene.cycles.samples = 1
-    scene.render.resolution_x = scene.render.resolution_y = 4
-    loop, *body = CODE.findall(text)
-    lines = "\n".join(f"    {line}" for line in body).replace("/folder", tmp_path.as_posix())
-    exec(f"{loop}\n{lines}", {"bpy": bpy, "scene": scene})
-    assert {path.name for path in tmp_path.iterdir()} == {"Camera.png", "Camera.001.png"}
 
 
 def test_vertices_are_placed_in_the_world(kb: KnowledgeBase) -> None:

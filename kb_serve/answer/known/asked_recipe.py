@@ -1,0 +1,128 @@
+"""The recipe that a question asks for: the few lines of Python that do a task."""
+
+from __future__ import annotations
+
+from array import array
+from collections import defaultdict
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+from kb_serve.rank.asked_words import SCRIPT_WORDS
+from simworlds.schemas.value_class import value_class
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kb_serve.rank.scoring import Concept
+    from kb_serve.reader import BaseReader
+
+RECIPE = "**Recipe**"  # begins one in an answer
+_LIKE = 0.6  # from here on, a question asks for a recipe
+_AS_LIKE = 0.85  # of the best, from which on another may be meant
+_OF_PHRASE = 0.15  # how much it counts that a phrase says of the question itself what its recipe knows of it
+_LEAST_WORDS = 2
+
+
+class Recipe(NamedTuple):
+    """What a base has of one: see ``kb_build.recipes``."""
+
+    title: str
+    takes: str
+    code: str
+
+
+@value_class
+class _Words:
+    """What the recipes are asked for by.
+
+    ``rarity`` is by stem, and so are the numbers of the ``phrases`` that have it and of the ``recipes`` that do, or
+    whose code does. ``recipe_of`` is the recipe of each phrase, ``weights`` what its stems weigh together.
+    """
+
+    rarity: dict[str, float]
+    phrases: dict[str, array[int]]
+    recipes: dict[str, array[int]]
+    recipe_of: list[int]
+    weights: list[float]
+
+
+class AskedRecipes:
+    """Finds the recipe for a question in one base."""
+
+    def __init__(self, reader: BaseReader) -> None:
+        self._reader = reader
+
+    def text(self, concepts: Sequence[Concept]) -> str:
+        """The recipe that a question asks for, in Markdown, and what others it may mean; "" if it asks for none."""
+        likes = self.likes(concepts)
+        best = max(likes.values(), default=0.0)
+        if best < _LIKE:
+            return ""
+        near = sorted(
+            (-like, number) for number, like in likes.items() if like >= max(_LIKE, _AS_LIKE * best)
+        )
+        first, *others = (self._recipe(number) for _, number in near)
+        takes = f". It takes {first.takes}." if first.takes else ""
+        also = (
+            f"\nOther recipes, by these names: {'; '.join(other.title for other in others)}."
+            if others
+            else ""
+        )
+        return f"{RECIPE}: {first.title}{takes}\n```python\n{first.code}\n```{also}"
+
+    def likes(self, concepts: Sequence[Concept]) -> dict[int, float]:
+        """How much a question is like each recipe that it is like at all, by numbers, at most 1: how much of one of its
+        phrases the question says, times how much of the question the recipe knows, and that phrase itself.
+        """
+        words = self._words
+        telling = [concept for concept in concepts if _tells(concept.word)]
+        if len(telling) < _LEAST_WORDS:
+            return {}
+        weights = [words.rarity.get(concept.stem, concept.idf) for concept in telling]
+        asked = {
+            concept.stem: concept.weight * weight for concept, weight in zip(telling, weights, strict=True)
+        }
+        total = sum(weights)
+        said: defaultdict[int, float] = defaultdict(float)
+        known: defaultdict[int, float] = defaultdict(float)
+        for stem, weight in asked.items():
+            for phrase in words.phrases.get(stem, ()):
+                said[phrase] += words.rarity[stem]
+            for recipe in words.recipes.get(stem, ()):
+                known[recipe] += weight
+        likes: dict[int, float] = {}
+        for phrase, weight in said.items():
+            recipe = words.recipe_of[phrase]
+            covered = (1 - _OF_PHRASE) * known[recipe] + _OF_PHRASE * weight
+            like = weight / words.weights[phrase] * covered / total
+            if like > likes.get(recipe, 0.0):
+                likes[recipe] = like
+        return likes
+
+    def _recipe(self, number: int) -> Recipe:
+        rows = self._reader.rows("SELECT title, takes, code FROM recipes WHERE number = ?", number)
+        if not rows:
+            raise self._reader.damaged(f"it has no recipe {number}")
+        return Recipe(*rows[0])
+
+    @cached_property
+    def _words(self) -> _Words:
+        rows = self._reader.rows("SELECT stem, rarity, phrases, recipes FROM recipe_words")
+        counts = self._reader.rows("SELECT phrases FROM recipes ORDER BY number")
+        try:
+            rarity = {stem: float(weight) for stem, weight, *_ in rows}
+            phrases = {stem: array("H", numbers) for stem, _, numbers, _ in rows}
+            recipes = {stem: array("H", numbers) for stem, *_, numbers in rows}
+            recipe_of = [number for number, (count,) in enumerate(counts) for _ in range(count)]
+            weights = [0.0] * len(recipe_of)
+            for stem, numbers in phrases.items():
+                for phrase in numbers:
+                    weights[phrase] += rarity[stem]
+        except (IndexError, TypeError, ValueError) as error:
+            raise self._reader.damaged(error) from error
+        return _Words(rarity, phrases, recipes, recipe_of, weights)
+
+
+def _tells(word: str) -> bool:
+    """Whether a word tells tasks apart: neither a number, nor a variable of one letter, nor that it is for a script."""
+    return len(word) > 1 and not word[0].isdigit() and word not in SCRIPT_WORDS

@@ -1,0 +1,151 @@
+"""Measures the recipes: whether each runs in every Blender it is for, and whether who asks for a task is told how.
+
+A question is answered if all that it needs stands in the first lines of the answer; a need is what code must have, and
+the ways to write it where there are several.
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from bench.markdown_tables import Table
+from kb_build.recipes.tables import recipes_for
+from kb_check.migrate.trial import runtime_at_hand
+from kb_serve.answer.known.asked_recipe import RECIPE
+from kb_serve.knowledge_base import KnowledgeBase
+from measurements.report import ReportPart, TargetFigure
+from measurements.setting import QUERIES, say
+from simworlds.sandbox.errors import ProgramFailed
+from simworlds.sandbox.runtime import run_script
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kb_build.recipes.tables import Recipe
+    from measurements.setting import Setting
+    from simworlds.sandbox.runtime import Runtime
+
+SETS = ("tasks", "tasks_kept")
+LINES = 40
+_VERSIONS = ("3.4", "4.2", "4.5", "5.0", "5.1", "5.2")
+_RUNNER = Path(__file__).parent / "scripts" / "run_recipes.py"
+_SECONDS = 600.0
+_RUN = ("Blender", "recipes", "did their task")
+_ASKED = ("questions", "asked", "answered", "with a recipe", "answered, of these")
+_NOTE = f"Answered: all that the code needs stands in the first {LINES} lines."
+
+
+@dataclass(frozen=True, slots=True)
+class TaskQuery:
+    """A question for a task; ``needs`` has for each thing that code must have the ways to write it."""
+
+    query: str
+    needs: tuple[tuple[str, ...], ...]
+
+    def is_answered(self, text: str) -> bool:
+        """Whether the beginning of an answer has all."""
+        begin = "\n".join(text.splitlines()[:LINES])
+        return all(any(way in begin for way in ways) for ways in self.needs)
+
+
+def read_tasks(path: Path) -> list[TaskQuery]:
+    """The questions of a file (corpora/queries/README.md has its format)."""
+    rows = [json.loads(line) for line in path.read_text("utf-8").splitlines()]
+    return [TaskQuery(row["query"], tuple(map(tuple, row["needs"]))) for row in rows]
+
+
+def run_recipes(recipes: Sequence[Recipe], runtime: Runtime) -> list[str]:
+    """What each recipe raises in a Blender, empty where it does its task.
+
+    Those behind one that ends Blender run in a new one, and so does that, as what ran before may be the cause.
+    """
+    errors: list[str] = []
+    while len(errors) < len(recipes):
+        told, ended = _errors_until_it_ends(recipes[len(errors) :], runtime)
+        errors += told or [ended]
+    return errors
+
+
+def _errors_until_it_ends(recipes: Sequence[Recipe], runtime: Runtime) -> tuple[list[str], str]:
+    """What recipes raise in one process, up to one that ends it, and how that ended."""
+    with tempfile.TemporaryDirectory(prefix="simworlds-recipes-") as folder:
+        scripts, errors = Path(folder) / "scripts.json", Path(folder) / "errors.jsonl"
+        scripts.write_text(json.dumps([recipe.script for recipe in recipes]), encoding="utf-8")
+        errors.touch()
+        arguments, log = [str(scripts), str(errors)], Path(folder) / "blender.log"
+        ended = ""
+        try:
+            run_script(runtime, _RUNNER, arguments, timeout=_SECONDS, log=log)
+        except ProgramFailed as error:
+            ended = str(error)
+        return [json.loads(line) for line in errors.read_text(encoding="utf-8").splitlines()], ended
+
+
+def measure(setting: Setting) -> ReportPart:
+    """Runs the recipes in the Blenders that are here, and asks the questions of both sets."""
+    ran, faults = _run(setting)
+    run, done = (sum(int(row[place]) for row in ran) for place in (1, 2))
+    asked = {name: _ask(setting.base, read_tasks(QUERIES / f"{name}.jsonl")) for name in SETS}
+    rows = tuple((name, *_cells(outcomes)) for name, outcomes in asked.items())
+    return ReportPart(
+        "recipes",
+        (
+            TargetFigure("recipes_run", done / max(1, run), f"{done} of {run} runs"),
+            *(
+                TargetFigure(
+                    f"answered_{name}",
+                    _share([answered for answered, _ in outcomes]),
+                    f"{sum(answered for answered, _ in outcomes)} of {len(outcomes)}",
+                )
+                for name, outcomes in asked.items()
+            ),
+        ),
+        (Table("Recipes, run", _RUN, tuple(ran)), Table("Tasks that are asked for", _ASKED, rows, _NOTE)),
+        tuple(faults),
+    )
+
+
+def _run(setting: Setting) -> tuple[list[tuple[str, ...]], list[str]]:
+    """A row for each Blender, and a line for each recipe that fails there."""
+    rows: list[tuple[str, ...]] = []
+    faults: list[str] = []
+    for version in _VERSIONS:
+        runtime = runtime_at_hand(version, setting.home)
+        if runtime is None:
+            continue
+        say(f"recipes: running them in Blender {version}")
+        recipes = recipes_for(version)
+        errors = run_recipes(recipes, runtime)
+        rows.append((version, str(len(recipes)), str(errors.count(""))))
+        faults += [
+            f"{version}: {recipe.title}: {error}"
+            for recipe, error in zip(recipes, errors, strict=True)
+            if error
+        ]
+    return rows, faults
+
+
+def _ask(base: Path, queries: Sequence[TaskQuery]) -> list[tuple[bool, bool]]:
+    """For each question whether it is answered, and whether by a recipe."""
+    say("recipes: asking for tasks")
+    with KnowledgeBase(base) as knowledge:
+        answers = [knowledge.query(query.query).text for query in queries]
+    return [(query.is_answered(text), RECIPE in text) for query, text in zip(queries, answers, strict=True)]
+
+
+def _share(outcomes: Sequence[bool]) -> float:
+    return sum(outcomes) / max(1, len(outcomes))
+
+
+def _cells(outcomes: Sequence[tuple[bool, bool]]) -> tuple[str, ...]:
+    by_recipe = [answered for answered, has_recipe in outcomes if has_recipe]
+    return (
+        str(len(outcomes)),
+        f"{_share([answered for answered, _ in outcomes]):.3f}",
+        str(len(by_recipe)),
+        f"{_share(by_recipe):.3f}",
+    )

@@ -1,0 +1,104 @@
+"""Who asks for a common task is shown the lines that do it."""
+
+from __future__ import annotations
+
+import sqlite3
+from contextlib import closing
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_build.recipes.tables import recipes_for
+from kb_serve.answer.known.asked_recipe import RECIPE, AskedRecipes
+from kb_serve.errors import BaseUnreadable
+from kb_serve.knowledge_base import KnowledgeBase
+from kb_serve.rank.search import Searcher
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kb_build.recipes.tables import Recipe
+    from kb_serve.reader import BaseReader
+
+
+@pytest.fixture
+def ours(reader: BaseReader) -> list[Recipe]:
+    return recipes_for(reader.meta["minor"])
+
+
+def test_each_phrase_asks_for_its_recipe(reader: BaseReader, ours: list[Recipe]) -> None:
+    asked, words = AskedRecipes(reader), reader.shared(Searcher).words
+    phrases = [
+        (number, phrase) for number, recipe in enumerate(ours) for phrase in (recipe.title, *recipe.asked)
+    ]
+    likes = [(number, phrase, asked.likes(words.concepts(phrase))) for number, phrase in phrases]
+    missed = [
+        phrase
+        for number, phrase, found in likes
+        if found.get(number, -1.0) < max(found.values(), default=0.0)
+    ]
+    assert len(missed) < len(phrases) / 100, missed
+
+
+def test_the_recipe_comes_first_with_what_it_takes(kb: KnowledgeBase, ours: list[Recipe]) -> None:
+    recipe = next(one for one in ours if one.takes)
+    text = kb.query(recipe.asked[0]).text
+    assert text.partition(RECIPE)[2].startswith(f": {recipe.title}. It takes {recipe.takes}.")
+    assert f"```python\n{recipe.code}\n```" in text
+    assert text.index(RECIPE) < text.index("## ")
+
+
+@pytest.mark.parametrize(
+    ("question", "title"),
+    [
+        ("world hdri rotation", "Light the scene with an HDRI"),
+        ("how do I load an HDRI as environment", "Light the scene with an HDRI"),
+        ("camera look at a point", "Aim a camera or light at a point"),
+        ("get node by type in a material", "Find a node of a material by its type and set its inputs"),
+        ("how to make a material transparent in eevee", "Make a material transparent"),
+        ("grease pencil add stroke python", "Draw a grease pencil stroke"),
+        ("render from several cameras in a loop and save each image", "Render the scene from each camera"),
+    ],
+)
+def test_a_question_in_other_words_finds_it(question: str, title: str, kb: KnowledgeBase) -> None:
+    assert f"{RECIPE}: {title}" in kb.query(question).text
+
+
+def test_no_answer_is_longer_for_a_recipe_than_it_may_be(kb: KnowledgeBase, ours: list[Recipe]) -> None:
+    for recipe in ours:
+        assert len(kb.query(recipe.title, max_tokens=300).text) <= 900, recipe.title
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "bpy.types.ShaderNodeTexImage",
+        "bpy.data.materials.new('Red')",
+        "AttributeError: 'Material' object has no attribute 'texture_slots'",
+        "material",
+        "scene",
+        "what is an ngon?",
+        "cloth collision quality",
+        "rigid body world substeps",
+        "hide the hdri in the viewport",
+        "remove grease pencil strokes",
+        "limit distance between objects constraint",
+        "curve to mesh node",
+    ],
+)
+def test_other_questions_get_none(kb: KnowledgeBase, query: str) -> None:
+    assert RECIPE not in kb.query(query).text
+
+
+def test_a_question_of_several_tasks_gets_the_recipe_of_each(kb: KnowledgeBase, ours: list[Recipe]) -> None:
+    text = kb.query("set the samples of cycles, add a sun light and write the script").text
+    assert text.count(RECIPE) == 2
+
+
+def test_a_base_whose_recipes_are_damaged_is_told(base: Path, tmp_path: Path) -> None:
+    damaged = tmp_path / base.name
+    damaged.write_bytes(base.read_bytes())
+    with closing(sqlite3.connect(damaged)) as file, file:
+        file.execute("UPDATE recipe_words SET phrases = x'00' WHERE stem = 'materi'")
+    with KnowledgeBase(damaged) as kb, pytest.raises(BaseUnreadable):
+        kb.query("add a new material to a mesh")
