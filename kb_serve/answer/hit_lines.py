@@ -89,7 +89,8 @@ class HitLines:
                 text = ""
             text = text.removeprefix(f"`{name}`").strip(", ·") or self._instead_of_words(entry)
             nearest = f" — nearest: {', '.join(f'`.{name}`' for name in row.members)}" if row.members else ""
-            return clip(f"`{owner + entry.name if owner else path}` {text}", _LINE_TOKENS) + nearest
+            line = clip(f"`{owner + entry.name if owner else path}` {text}", _LINE_TOKENS)
+            return line + nearest + self._written_as(entry)
         page = self._reader.manual.page_entry(hit.id)
         text = first_sentence(said_of(page, self._reader)) if page else ""
         return clip(f"`{hit.id}` ({hit.title}) {text}", _LINE_TOKENS)
@@ -110,6 +111,11 @@ class HitLines:
             return []
         symbol = self._reader.symbol(hit.id)
         return asked_values(symbol, asked) if symbol else []
+
+    def _written_as(self, entry: SymbolEntry) -> str:
+        """How code calls a method: its path is no code, as a class is not what has it."""
+        owner = self._reader.entry(entry.owner) if entry.kind == "function" else None
+        return f" — `{owner.reached}.{entry.name}(…)`" if owner is not None and owner.reached else ""
 
     def _values(self, hit: Hit, asked: Sequence[str]) -> str:
         values = [f"`{value.text}`" for value in self.asked(hit, asked)]

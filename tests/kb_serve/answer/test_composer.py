@@ -235,7 +235,7 @@ def test_each_part_of_a_question_is_answered_in_brief_and_no_name_twice(kb: Know
     answer = kb.query(
         "add a modifier to the object, make cloth collide with itself and set the render engine"
     )
-    parts = [line for line in answer.text.split("\n") if line.startswith("**")]
+    parts = [line for line in answer.text.split("\n") if re.match(r"\*\*\d\. ", line)]
     assert parts == [
         "**1. add a modifier to the object**",
         "**2. make cloth collide with itself**",
@@ -247,7 +247,7 @@ def test_each_part_of_a_question_is_answered_in_brief_and_no_name_twice(kb: Know
     assert any("modifier" in line for line in first)
     assert any("use_self_collision" in line for line in second)
     assert any("RenderSettings.engine" in line for line in third)
-    named = [line.split("`")[1] for line in (*first, *second, *third)]
+    named = [line.split("`")[1] for line in (*first, *second, *third) if line.startswith("- ")]
     assert len(named) == len({*named})
     assert {hit.id for hit in answer.hits} <= {*named}
 
@@ -342,3 +342,11 @@ def test_the_arguments_that_words_ask_of_a_named_function_come_first(kb: Knowled
     assert told.count("- `search` (") == 1
     assert "**Asked for**" not in kb.query("bpy.props.StringProperty").text
     assert "**Asked for**" not in kb.query("bpy.props.StringProperty(name='search')").text
+
+
+def test_a_method_is_told_as_code_calls_it(kb: KnowledgeBase) -> None:
+    text = kb.query(
+        "add a modifier to the object, make cloth collide with itself and link a new collection"
+    ).text
+    assert "`bpy.types.BlendDataCollections.new`" in text
+    assert "`bpy.data.collections.new(…)`" in text
