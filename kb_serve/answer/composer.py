@@ -20,7 +20,7 @@ from kb_serve.answer.hit_blocks import HitBlocks
 from kb_serve.answer.hit_lines import HitLines
 from kb_serve.answer.hits import hits_of
 from kb_serve.answer.known.asked_recipe import AskedRecipes
-from kb_serve.answer.known.practice import Practice
+from kb_serve.answer.known.practice import HOW_TO, Practice
 from kb_serve.answer.query_text import in_one_line, is_plain
 from kb_serve.answer.question_frame import without_frame
 from kb_serve.answer.render import MarkdownRenderer
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
     from kb_serve.answer.docs_answer import DocsAnswer
     from kb_serve.answer.hits import Hit
+    from kb_serve.answer.known.asked_recipe import AskedRecipe
     from kb_serve.answer.topic.overview import TopicOverview
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.several import QuestionPart
@@ -105,14 +106,15 @@ class AnswerComposer:
         names = [match for match in ranking.recognition.matches if match.sure >= SURE]
         is_named = ranking.named or any(match.why != "enum item" for match in names)
         if not is_named and (parts := parts_of(text)):
-            return self._answer_each(parts, ranking, limit, [*self._recipe(text)])
+            return self._answer_each(parts, ranking, limit, self._recipe(text))
         rows = self._listed(ranking, limit)
         hits = hits_of(rows, self._reader)
         known = (
-            ()
+            []
             if ranking.notes or told
-            else self._known(hits[:1] if ranking.named else hits[:_KNOWN_OF], text, is_named=ranking.named)
+            else [*self._known(hits[:1] if ranking.named else hits[:_KNOWN_OF], text, is_named=ranking.named)]
         )
+        known, recipe = _one_way(known, self._recipe(text))
         said = (*ranking.notes, *known, ranking.alike, *self._source_notes(ranking, hits))
         notes = tuple(dict.fromkeys(filter(None, said)))
         if not hits:
@@ -128,14 +130,13 @@ class AnswerComposer:
             names = ranking.recognition.arguments.get(hits[0].id, ())
             kind = "page" if hits[0].is_page else "schema"
             blocks = self._told.named(hits, rows, text, names, members)
-        return draft_of(kind, hits, notes, (*self._recipe(text), *blocks))
+        return draft_of(kind, hits, notes, (*_recipe_block(recipe), *blocks))
 
-    def _recipe(self, text: str) -> Iterator[AnswerBlock]:
-        """The few lines that do the task of a question in plain words."""
-        if not is_message(text) and sum(map(str.isalpha, text.split())) >= _LEAST_PROSE:
-            concepts = self._ranker.searcher.words.concepts(text)
-            if recipe := self._recipes.text(concepts):
-                yield AnswerBlock(recipe, "recipe")
+    def _recipe(self, text: str) -> AskedRecipe | None:
+        """The few lines that do the task of a question."""
+        if is_message(text) or sum(map(str.isalpha, text.split())) < _LEAST_PROSE:
+            return None
+        return self._recipes.find(self._ranker.searcher.words.concepts(text))
 
     def _changes(self, version: str, limit: int) -> Draft:
         """What a version changed as a whole."""
@@ -196,12 +197,12 @@ class AnswerComposer:
         return draft_of("candidates", hits, notes, blocks)
 
     def _answer_each(
-        self, parts: Sequence[QuestionPart], ranking: Ranking, limit: int, recipe: Sequence[AnswerBlock]
+        self, parts: Sequence[QuestionPart], ranking: Ranking, limit: int, recipe: AskedRecipe | None
     ) -> Draft:
         """The names and the page for each part of a question, in brief, and the first of what one has to know of it:
         behind the ``recipe`` for all of it, if there is one, or else each behind its own.
         """
-        blocks = [*recipe]
+        blocks = [*_recipe_block(recipe)]
         found: list[list[RankedId]] = []
         for number, part in enumerate(parts, 1):
             told = {row.id for rows in found for row in rows}
@@ -214,8 +215,13 @@ class AnswerComposer:
             lines = [f"- {self._lines.line(hits[place], rows[place])}" for place in chosen]
             first = [hits[place] for place in chosen[:1]]
             known = [*self._known(first, part.asked, is_named=False)][:_KNOWN_OF_A_PART]
-            own = () if recipe else (block.text for block in self._recipe(part.asked))
-            lines = [*own, *self._topics.first_steps(part.topic, _STEPS_OF_A_PART), *known, *lines]
+            known, own = _one_way(known, None if recipe else self._recipe(part.asked))
+            lines = [
+                *(block.text for block in _recipe_block(own)),
+                *self._topics.first_steps(part.topic, _STEPS_OF_A_PART),
+                *known,
+                *lines,
+            ]
             blocks.append(AnswerBlock("\n".join((f"**{number}. {part.text}**", *lines)), part.text))
             found.append([rows[place] for place in sorted(chosen)])
         # In turns, as each part is one of several answers.
@@ -262,6 +268,17 @@ class AnswerComposer:
             *overview.more,
         )
         return draft_of("page", hits, notes, blocks)
+
+
+def _one_way(known: Sequence[str], recipe: AskedRecipe | None) -> tuple[Sequence[str], AskedRecipe | None]:
+    """The same, with one way to do a task: a recipe that is sure to be for it, or else a sentence that does it."""
+    if recipe is None or HOW_TO.isdisjoint(known):
+        return known, recipe
+    return ([text for text in known if text not in HOW_TO], recipe) if recipe.is_sure else (known, None)
+
+
+def _recipe_block(recipe: AskedRecipe | None) -> list[AnswerBlock]:
+    return [AnswerBlock(recipe.text, "recipe")] if recipe else []
 
 
 def _in_given_order(ids: Iterable[str], why: Literal["part", "topic"]) -> list[RankedId]:

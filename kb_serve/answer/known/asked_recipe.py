@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 RECIPE = "**Recipe**"  # begins one in an answer
 _LIKE = 0.6  # from here on, a question asks for a recipe
+_SURE = 0.8  # from here on, for that and nothing like it
 _AS_LIKE = 0.85  # of the best, from which on another may be meant
 _OF_PHRASE = 0.15  # how much it counts that a phrase says of the question itself what its recipe knows of it
 _LEAST_WORDS = 2
@@ -29,6 +30,13 @@ class Recipe(NamedTuple):
     title: str
     takes: str
     code: str
+
+
+class AskedRecipe(NamedTuple):
+    """A recipe in Markdown, and whether the question is sure to ask for it."""
+
+    text: str
+    is_sure: bool
 
 
 @value_class
@@ -52,12 +60,12 @@ class AskedRecipes:
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
 
-    def text(self, concepts: Sequence[Concept]) -> str:
-        """The recipe that a question asks for, in Markdown, and what others it may mean; "" if it asks for none."""
+    def find(self, concepts: Sequence[Concept]) -> AskedRecipe | None:
+        """The recipe that a question asks for, and what others it may mean; None if it asks for none."""
         likes = self.likes(concepts)
         best = max(likes.values(), default=0.0)
         if best < _LIKE:
-            return ""
+            return None
         near = sorted(
             (-like, number) for number, like in likes.items() if like >= max(_LIKE, _AS_LIKE * best)
         )
@@ -68,7 +76,9 @@ class AskedRecipes:
             if others
             else ""
         )
-        return f"{RECIPE}: {first.title}{takes}\n```python\n{first.code}\n```{also}"
+        return AskedRecipe(
+            f"{RECIPE}: {first.title}{takes}\n```python\n{first.code}\n```{also}", best >= _SURE
+        )
 
     def likes(self, concepts: Sequence[Concept]) -> dict[int, float]:
         """How much a question is like each recipe that it is like at all, by numbers, at most 1: how much of one of its

@@ -6,9 +6,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import stems_of
-from kb_serve.answer.known.addon_recipes import ADDON_RECIPES
+from kb_serve.answer.known.addon_sentences import ADDON_SENTENCES
 from kb_serve.answer.known.advice import ADVICE
-from kb_serve.answer.known.recipes import RECIPES
+from kb_serve.answer.known.task_sentences import TASK_SENTENCES
 from kb_serve.recognise.chains.subscripts import NODES_MODIFIER, CustomProperties
 from simworlds.releases import version_key
 
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from kb_serve.answer.known.told_of import Advice
     from kb_serve.reader import BaseReader
 
+# What does a task in a sentence: of no use beside a recipe that does it.
+HOW_TO = frozenset(advice.text for advice in (*TASK_SENTENCES, *ADDON_SENTENCES) if advice.wherever)
 _MOST_SAID = 20  # words; in more, which are code, those of a group stand by chance
 _TOGGLES_ATTRIBUTE = "bpy.ops.object.geometry_nodes_input_attribute_toggle"
 
@@ -62,7 +64,7 @@ class Practice:
         version = version_key(self._reader.meta.get("minor", ""))
         return tuple(
             advice
-            for advice in (*ADVICE, *RECIPES, *ADDON_RECIPES)
+            for advice in (*ADVICE, *TASK_SENTENCES, *ADDON_SENTENCES)
             if advice.since <= version < advice.before
             and (not advice.needs or self._reader.entry(advice.needs) is not None)
         )

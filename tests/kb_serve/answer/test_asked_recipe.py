@@ -53,6 +53,16 @@ def test_the_recipe_comes_first_with_what_it_takes(kb: KnowledgeBase, ours: list
     [
         ("world hdri rotation", "Light the scene with an HDRI"),
         ("how do I load an HDRI as environment", "Light the scene with an HDRI"),
+        ("copy object with its data and link", "Duplicate an object"),
+        ("how to set smooth shading by angle", "Shade a mesh smooth, with sharp edges by angle"),
+        ("set crease of edges by script", "Mark edges of a mesh as sharp, as seams or with a crease"),
+        (
+            "apply scale and rotation without operator",
+            "Apply location, rotation and scale to the mesh of an object",
+        ),
+        ("distance between two objects", "Measure the distance between two objects"),
+        ("get bounding box in world coordinates", "Get the bounding box of an object in the world"),
+        ("how to rotate object around world axis", "Move, turn and scale an object in the world"),
         ("camera look at a point", "Aim a camera or light at a point"),
         ("get node by type in a material", "Find a node of a material by its type and set its inputs"),
         ("how to make a material transparent in eevee", "Make a material transparent"),

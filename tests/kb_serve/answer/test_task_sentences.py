@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from kb_serve.answer.known.recipes import RECIPES
+from kb_serve.answer.known.task_sentences import TASK_SENTENCES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -42,7 +42,7 @@ def cube() -> Any:
 def told(kb: KnowledgeBase, question: str) -> str:
     """The one recipe that an answer tells."""
     notes = kb.query(question).notes
-    (text,) = (recipe.text for recipe in RECIPES if recipe.text in notes)
+    (text,) = (recipe.text for recipe in TASK_SENTENCES if recipe.text in notes)
     return text
 
 
@@ -63,19 +63,9 @@ def test_a_moved_objects_matrix_is_updated_first(kb: KnowledgeBase) -> None:
     assert ob.matrix_world.translation.x == 5
 
 
-def test_a_copy_is_given_data_and_a_collection(kb: KnowledgeBase) -> None:
-    ob = cube()
-    ob.keyframe_insert("location")
-    new = run(told(kb, "copy object with its data and link"), ob=ob)["new"]
-    assert new.data != ob.data
-    assert new.animation_data.action == ob.animation_data.action
-    assert new.users_collection == (bpy.context.collection,)
-
-
 @pytest.mark.parametrize(
     ("question", "adds"),
     [
-        ("convert curve to mesh without operator", bpy.ops.curve.primitive_bezier_circle_add),
         ("convert a metaball to a mesh", bpy.ops.object.metaball_add),
     ],
 )
@@ -86,60 +76,14 @@ def test_what_has_a_surface_becomes_a_mesh(
     assert len(run(told(kb, question), ob=bpy.context.object)["mesh"].vertices) > 0
 
 
-def test_edges_are_sharp_from_an_angle_on(kb: KnowledgeBase) -> None:
-    mesh = cube().data
-    run(told(kb, "how to set smooth shading by angle"), 2, mesh=mesh)
-    assert all(value.value for value in mesh.attributes["sharp_edge"].data)
-    assert mesh.polygons[0].use_smooth
-
-
-@pytest.mark.parametrize(
-    ("question", "name"),
-    [
-        ("set crease of edges by script", "crease_edge"),
-        ("edge bevel weight python 4.0", "bevel_weight_edge"),
-    ],
-)
-def test_what_an_edge_weighs_is_an_attribute(question: str, name: str, kb: KnowledgeBase) -> None:
-    text, mesh = told(kb, question), cube().data
-    bm = bmesh.new()
-    bm.from_mesh(mesh)
-    layer = run(text, 0, 1, 3, bm=bm, mesh=mesh)["layer"]
-    for edge in bm.edges:
-        run(text, 0, 1, 2, edge=edge, layer=layer, mesh=mesh)
-    bm.to_mesh(mesh)
-    assert {value.value for value in mesh.attributes[name].data} == {1.0}
-    mesh.attributes.remove(mesh.attributes[name])
-    run(text, 2, 3, mesh=mesh, edge=mesh.edges[3])
-    assert mesh.attributes[name].data[3].value == 1.0
-
-
 def corners(ob: Any) -> list[float]:
     updated()
     return [number for vertex in ob.data.vertices for number in ob.matrix_world @ vertex.co]
 
 
-def test_what_is_applied_stays_where_it_is(kb: KnowledgeBase) -> None:
-    ob = cube()
-    ob.scale, ob.rotation_euler.z = (1, 2, 3), 0.5
-    before = corners(ob)
-    run(told(kb, "apply scale and rotation without operator"), ob=ob)
-    assert corners(ob) == pytest.approx(before, abs=1e-5)
-    assert tuple(ob.scale) == (1, 1, 1)
-
-
 def value(text: str, **names: Any) -> Any:
     """What the first code of a recipe gives."""
     return eval(CODE.findall(text)[0], {"Vector": Vector, **names})
-
-
-def test_how_far_apart_objects_are_and_where_their_boxes_lie(kb: KnowledgeBase) -> None:
-    ob, other = cube(), bpy.data.objects["Camera"]
-    ob.location, other.location = (0, 0, 10), (0, 3, 14)
-    updated()
-    assert value(told(kb, "distance between two objects"), a=ob, b=other) == pytest.approx(5)
-    box = value(told(kb, "get bounding box in world coordinates"), ob=ob)
-    assert {round(corner.z) for corner in box} == {9, 11}
 
 
 def test_a_normal_holds_for_any_scale(kb: KnowledgeBase) -> None:
@@ -153,18 +97,6 @@ def test_a_normal_holds_for_any_scale(kb: KnowledgeBase) -> None:
     assert abs(normal.dot((b - a).cross(c - b).normalized())) > 0.9
 
 
-def test_a_turn_around_the_worlds_axis_leaves_the_place(kb: KnowledgeBase) -> None:
-    ob = cube()
-    ob.location, ob.rotation_euler = (1, 2, 3), (0.3, 0.4, 0.5)
-    updated()
-    wanted = Matrix.Rotation(0.7, 3, "Z") @ ob.matrix_world.to_3x3()
-    run(told(kb, "how to rotate object around world axis"), ob=ob, angle=0.7)
-    updated()
-    for row, other in zip(ob.matrix_world.to_3x3(), wanted, strict=True):
-        assert tuple(row) == pytest.approx(tuple(other), abs=1e-5)
-    assert tuple(ob.location) == (1, 2, 3)
-
-
 def test_the_selected_objects_are_listed(kb: KnowledgeBase) -> None:
     cube().select_set(True)
     text = told(kb, "how do I get all selected objects")
@@ -175,7 +107,6 @@ def test_the_selected_objects_are_listed(kb: KnowledgeBase) -> None:
 @pytest.mark.parametrize(
     "question",
     [
-        "how do I add a custom property to an object",
         "store custom data in the scene that is saved in the file",
     ],
 )
@@ -224,7 +155,7 @@ def test_an_origin_moves_and_what_is_seen_stays(kb: KnowledgeBase) -> None:
     ],
 )
 def test_a_question_of_something_else_is_told_none(question: str, kb: KnowledgeBase) -> None:
-    assert not {recipe.text for recipe in RECIPES}.intersection(kb.query(question).notes)
+    assert not {recipe.text for recipe in TASK_SENTENCES}.intersection(kb.query(question).notes)
 
 
 def test_vertices_are_placed_in_the_world(kb: KnowledgeBase) -> None:
@@ -326,8 +257,3 @@ def test_a_ray_from_the_mouse_gives_six_values(kb: KnowledgeBase) -> None:
     exec(cast, held)
     assert held["hit"]
     assert held["ob"].name == "Cube"
-
-
-def test_all_objects_of_a_type_are_selected(kb: KnowledgeBase) -> None:
-    exec(CODE.findall(told(kb, "how to select all objects of type mesh"))[0], {"bpy": bpy})
-    assert [ob.name for ob in bpy.context.selected_objects] == ["Cube"]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from kb_serve.answer.known.addon_recipes import ADDON_RECIPES
+from kb_serve.answer.known.addon_sentences import ADDON_SENTENCES
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
@@ -20,7 +20,7 @@ NAME = "bl_ext.user_default.tried"
 
 def told(kb: KnowledgeBase, question: str) -> list[str]:
     notes = kb.query(question).notes
-    return [recipe.text for recipe in ADDON_RECIPES if recipe.text in notes]
+    return [recipe.text for recipe in ADDON_SENTENCES if recipe.text in notes]
 
 
 @pytest.mark.parametrize(
@@ -93,7 +93,9 @@ def test_preferences_are_found_by_the_whole_name_of_the_package(
 def test_blender_has_all_that_is_named() -> None:
     bpy: Any = pytest.importorskip("bpy")
     manager = bpy.types.WindowManager.bl_rna.functions
-    calls = {name for recipe in ADDON_RECIPES for name in re.findall(r"window_manager\.(\w+)\(", recipe.text)}
+    calls = {
+        name for recipe in ADDON_SENTENCES for name in re.findall(r"window_manager\.(\w+)\(", recipe.text)
+    }
     assert calls == {"event_timer_add", "event_timer_remove", "fileselect_add", "modal_handler_add"}
     assert calls <= {*manager.keys()}
     assert "TIMER" in bpy.types.Event.bl_rna.properties["type"].enum_items

@@ -9,38 +9,13 @@ _STALE = (
     "`ob.matrix_world` takes in what a script has set (`ob.location`, a parent, a constraint) only after "
     "`bpy.context.view_layer.update()`."
 )
-_COPIED = (
-    "`new = ob.copy()` is in no collection and shares its data and its action with `ob`: "
-    "`new.data = ob.data.copy()` gives it data of its own, `bpy.context.collection.objects.link(new)` shows it."
-)
 _CONVERTED = (
     "Without an operator, and as its modifiers make it: "
     f'`mesh = bpy.data.meshes.new_from_object(ob{GET_EVALUATED})`, then `bpy.data.objects.new("Mesh", mesh)`.'
 )
-_SHARP = (
-    "`mesh.shade_smooth()`, then `mesh.set_sharp_from_angle(angle=math.radians(30))` need no operator; selected "
-    "objects get the same by `bpy.ops.object.shade_smooth_by_angle(angle=math.radians(30))`."
-)
-_WEIGHTED = (
-    "The {0} of edges is an attribute: "
-    "`attribute = mesh.attributes.get(\"{1}\") or mesh.attributes.new(\"{1}\", 'FLOAT', 'EDGE')`, "
-    "`attribute.data[edge.index].value = 1.0`; in a BMesh, before its edges are taken, "
-    '`layer = bm.edges.layers.float.get("{1}") or bm.edges.layers.float.new("{1}")`, `edge[layer] = 1.0`.'
-)
-_APPLIED = (
-    "Without an operator: `ob.data.transform(ob.matrix_basis)`, then `ob.matrix_basis.identity()`; data that other "
-    "objects share changes for them, too."
-)
-_APART = (
-    "`(a.matrix_world.translation - b.matrix_world.translation).length` is how far apart two objects are."
-)
-_BOUNDED = "In the world: `[ob.matrix_world @ Vector(corner) for corner in ob.bound_box]`."
 _NORMAL = (
     "In the world: `(ob.matrix_world.inverted().transposed().to_3x3() @ polygon.normal).normalized()`, which holds for "
     "any scale."
-)
-_ROTATED = (
-    "Around an axis of the world, in place: `ob.rotation_euler.rotate(Matrix.Rotation(angle, 3, 'Z'))`."
 )
 _CHOSEN = (
     "`bpy.context.selected_objects` is a list of them, `bpy.context.view_layer.objects.selected` has the same: "
@@ -89,11 +64,10 @@ _UNDER_MOUSE = (
     "`direction = view3d_utils.region_2d_to_vector_3d(*view)`, then `hit, location, normal, index, ob, matrix = "
     "context.scene.ray_cast(context.evaluated_depsgraph_get(), origin, direction)`."
 )
-_OF_TYPE = "`for ob in bpy.context.view_layer.objects: ob.select_set(ob.type == 'MESH')`"
 
 _OBJECTS = stems("object objects")
 _NODES = stems("geometry modifier node nodes")
-RECIPES: tuple[Advice, ...] = (
+TASK_SENTENCES: tuple[Advice, ...] = (
     Advice(
         _BESIDE,
         wherever=(
@@ -119,11 +93,6 @@ RECIPES: tuple[Advice, ...] = (
             stems("cast ray raycast under"),
         ),
         unless=stems("3d node snap"),
-    ),
-    Advice(
-        _OF_TYPE,
-        wherever=(stems("select"), stems("all every"), _OBJECTS, stems("type")),
-        unless=stems("bone collection material menu node"),
     ),
     Advice(
         _PLACED,
@@ -167,63 +136,14 @@ RECIPES: tuple[Advice, ...] = (
         ),
     ),
     Advice(
-        _COPIED,
-        wherever=(
-            stems("clone copy duplicate"),
-            _OBJECTS,
-            stems("copy data link mesh object python script"),
-        ),
-        unless=stems(
-            "animation another attributes bone bpy collection constraint custom driver file from location material "
-            "modifier paste properties rotation settings transforms uv weights"
-        ),
-    ),
-    Advice(
         _CONVERTED,
         wherever=(stems("curve curves metaball surface text"), stems("mesh"), stems("convert turn")),
         unless=_NODES,
     ),
     Advice(
-        _SHARP,
-        wherever=(stems("auto edges normals shade shading"), stems("smooth"), stems("angle degree degrees")),
-        unless=stems("modifier node nodes vertices"),
-        needs="bpy.types.Mesh.set_sharp_from_angle",
-    ),
-    Advice(
-        _WEIGHTED.format("bevel weight", "bevel_weight_edge"),
-        wherever=(stems("bevel"), stems("edge edges"), stems("weight weights")),
-        unless=_NODES,
-        since=(4, 0),
-    ),
-    Advice(
-        _WEIGHTED.format("crease", "crease_edge"),
-        wherever=(stems("crease creases"), stems("edge edges")),
-        unless=_NODES,
-        since=(4, 0),
-    ),
-    Advice(
-        _APPLIED,
-        wherever=(
-            stems("apply"),
-            stems("rotation scale transform transforms"),
-            stems("operator without"),
-        ),
-    ),
-    Advice(
-        _APART,
-        wherever=(stems("distance"), stems("between"), _OBJECTS),
-        unless=stems("driver limit node nodes"),
-    ),
-    Advice(_BOUNDED, wherever=(stems("bound bounding bounds"), stems("box corners"), stems("global world"))),
-    Advice(
         _NORMAL,
         wherever=(stems("face normal polygon"), stems("normal normals"), stems("global world")),
         unless=_NODES,
-    ),
-    Advice(
-        _ROTATED,
-        wherever=(stems("rotate turn"), stems("axis"), stems("global world")),
-        unless=stems("bone hdri"),
     ),
     Advice(
         _CHOSEN,

@@ -34,7 +34,7 @@ _CHOOSES_FILE = (
     "`filepath: bpy.props.StringProperty(subtype='FILE_PATH')`."
 )
 
-ADDON_RECIPES: tuple[Advice, ...] = (
+ADDON_SENTENCES: tuple[Advice, ...] = (
     Advice(
         _IN_ORDER,
         frozenset({f"{_PROPS}CollectionProperty", f"{_PROPS}PointerProperty"}) | of("PropertyGroup"),
