@@ -14,8 +14,23 @@ if TYPE_CHECKING:
     from kb_build.recipes.tables import Recipe
 
 # Who does not say one of these does not want it: they count more than they are rare.
-_UNDOING = frozenset(map(stem, ("clear", "delete", "detach", "remove", "rid", "strip", "unassign", "unlink")))
-_UNDOES = 2.0
+_UNDOING = ("clear", "delete", "detach", "remove", "rid", "strip", "unassign", "unlink")
+# Each stands for any other of these: they count less.
+_MAKING = (
+    "add",
+    "apply",
+    "assign",
+    "build",
+    "change",
+    "create",
+    "generate",
+    "give",
+    "new",
+    "put",
+    "set",
+    "use",
+)
+_COUNTS = dict.fromkeys(map(stem, _UNDOING), 2.0) | dict.fromkeys(map(stem, _MAKING), 0.4)
 
 
 def recipe_rows(recipes: Sequence[Recipe]) -> Iterator[tuple[int, str, str, str, int]]:
@@ -43,7 +58,7 @@ def recipe_words(
             known.setdefault(word, {})[number] = None
     for word, numbers in known.items():
         rarity = idf(count, len(units[word].numbers) if word in units else 1)
-        rarity *= _UNDOES if word in _UNDOING else 1
+        rarity *= _COUNTS.get(word, 1.0)
         yield word, rarity, _numbers(phrases.get(word, ())), _numbers(numbers)
 
 

@@ -17,7 +17,7 @@ from kb_serve.answer.drafts import Draft, draft_of, paged, with_notes
 from kb_serve.answer.facts.asked_values import asked_words
 from kb_serve.answer.hit_answers import HitAnswers
 from kb_serve.answer.hit_blocks import HitBlocks
-from kb_serve.answer.hit_lines import HitLines
+from kb_serve.answer.hit_lines import NAMES, PAGES, HitLines
 from kb_serve.answer.hits import hits_of
 from kb_serve.answer.known.asked_recipe import AskedRecipes
 from kb_serve.answer.known.practice import HOW_TO, Practice
@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.several import QuestionPart
 
+_BESIDE = {NAMES, PAGES}  # blocks of what was found beside the best hit
 _LEAST_PROSE = 3  # words of a question that may ask for a task
 _KNOWN_OF = 3  # hits for a description among which what one has to know of them is looked for
 _NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
@@ -106,7 +107,7 @@ class AnswerComposer:
         names = [match for match in ranking.recognition.matches if match.sure >= SURE]
         is_named = ranking.named or any(match.why != "enum item" for match in names)
         if not is_named and (parts := parts_of(text)):
-            return self._answer_each(parts, ranking, limit, self._recipe(text))
+            return self._answer_each(parts, ranking, limit, self._likely_recipe(text))
         rows = self._listed(ranking, limit)
         hits = hits_of(rows, self._reader)
         known = (
@@ -130,13 +131,17 @@ class AnswerComposer:
             names = ranking.recognition.arguments.get(hits[0].id, ())
             kind = "page" if hits[0].is_page else "schema"
             blocks = self._told.named(hits, rows, text, names, members)
-        return draft_of(kind, hits, notes, (*_recipe_block(recipe), *blocks))
+        return draft_of(kind, hits, notes, _with_recipe(blocks, recipe))
 
     def _recipe(self, text: str) -> AskedRecipe | None:
         """The few lines that do the task of a question."""
         if is_message(text) or sum(map(str.isalpha, text.split())) < _LEAST_PROSE:
             return None
         return self._recipes.find(self._ranker.searcher.words.concepts(text))
+
+    def _likely_recipe(self, text: str) -> AskedRecipe | None:
+        recipe = self._recipe(text)
+        return recipe if recipe and recipe.is_likely else None
 
     def _changes(self, version: str, limit: int) -> Draft:
         """What a version changed as a whole."""
@@ -215,7 +220,7 @@ class AnswerComposer:
             lines = [f"- {self._lines.line(hits[place], rows[place])}" for place in chosen]
             first = [hits[place] for place in chosen[:1]]
             known = [*self._known(first, part.asked, is_named=False)][:_KNOWN_OF_A_PART]
-            known, own = _one_way(known, None if recipe else self._recipe(part.asked))
+            known, own = _one_way(known, None if recipe else self._likely_recipe(part.asked))
             lines = [
                 *(block.text for block in _recipe_block(own)),
                 *self._topics.first_steps(part.topic, _STEPS_OF_A_PART),
@@ -279,6 +284,15 @@ def _one_way(known: Sequence[str], recipe: AskedRecipe | None) -> tuple[Sequence
 
 def _recipe_block(recipe: AskedRecipe | None) -> list[AnswerBlock]:
     return [AnswerBlock(recipe.text, "recipe")] if recipe else []
+
+
+def _with_recipe(blocks: Iterable[AnswerBlock], recipe: AskedRecipe | None) -> list[AnswerBlock]:
+    """An answer behind the recipe that is asked for, or with one that may be of use behind the best hit."""
+    others = [*blocks]
+    told = 0
+    if recipe and not recipe.is_likely:
+        told = next((place for place, block in enumerate(others) if block.name in _BESIDE), len(others))
+    return [*others[:told], *_recipe_block(recipe), *others[told:]]
 
 
 def _in_given_order(ids: Iterable[str], why: Literal["part", "topic"]) -> list[RankedId]:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from kb_serve.lookups.records import Creation, SymbolEntry
     from kb_serve.reader import BaseReader
 
-NAMES = "further names"
+NAMES, PAGES = "further names", "further pages"
 _LINE_TOKENS = 60
 _LONGEST_CALL = 70  # characters
 
@@ -45,7 +45,7 @@ class HitLines:
         made = self._reader.makers.creations([hit.id for hit in hits if hit.kind == "class"])
         for title, name, are_pages in (
             ("In Python", NAMES, False),
-            ("Pages", "further pages", True),
+            ("Pages", PAGES, True),
         ):
             lines = [
                 f"- {self.line(hit, row)}{self._values(hit, asked)}{_made(hit.id, made.get(hit.id))}"

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 RECIPE = "**Recipe**"  # begins one in an answer
-_LIKE = 0.6  # from here on, a question asks for a recipe
-_SURE = 0.8  # from here on, for that and nothing like it
+_PERHAPS = 0.5  # how much a question is like a recipe that may be of use to it
+_LIKELY = 0.6  # … that it asks for
+_SURE = 0.8  # … that it asks for, and for nothing like that
 _AS_LIKE = 0.85  # of the best, from which on another may be meant
 _OF_PHRASE = 0.15  # how much it counts that a phrase says of the question itself what its recipe knows of it
 _LEAST_WORDS = 2
@@ -33,10 +34,20 @@ class Recipe(NamedTuple):
 
 
 class AskedRecipe(NamedTuple):
-    """A recipe in Markdown, and whether the question is sure to ask for it."""
+    """A recipe in Markdown, and how much the question is like it."""
 
     text: str
-    is_sure: bool
+    like: float
+
+    @property
+    def is_likely(self) -> bool:
+        """Whether the question asks for it: else it may be of use."""
+        return self.like >= _LIKELY
+
+    @property
+    def is_sure(self) -> bool:
+        """Whether the question asks for it and for nothing like it."""
+        return self.like >= _SURE
 
 
 @value_class
@@ -64,10 +75,10 @@ class AskedRecipes:
         """The recipe that a question asks for, and what others it may mean; None if it asks for none."""
         likes = self.likes(concepts)
         best = max(likes.values(), default=0.0)
-        if best < _LIKE:
+        if best < _PERHAPS:
             return None
         near = sorted(
-            (-like, number) for number, like in likes.items() if like >= max(_LIKE, _AS_LIKE * best)
+            (-like, number) for number, like in likes.items() if like >= max(_PERHAPS, _AS_LIKE * best)
         )
         first, *others = (self._recipe(number) for _, number in near)
         takes = f". It takes {first.takes}." if first.takes else ""
