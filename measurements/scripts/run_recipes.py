@@ -22,7 +22,7 @@ def error_of(script: str) -> str:
     bpy: Any = import_module("bpy")
     bpy.ops.wm.read_factory_settings()
     try:
-        exec(compile(script, "recipe", "exec"), {"__name__": "__main__"})  # noqa: S102 - recipes are of this project
+        exec(compile(script, "recipe", "exec", dont_inherit=True), {"__name__": "__main__"})  # noqa: S102 - recipes are of this project
     except Exception as error:
         lines = script.splitlines()
         at = [row.lineno for row in traceback.extract_tb(error.__traceback__) if row.filename == "recipe"]
@@ -40,6 +40,7 @@ def main() -> None:
             os.chdir("/")
         with errors.open("a", encoding="utf-8") as out:
             out.write(json.dumps(error) + "\n")
+    os._exit(0)  # a Blender that has baked a fluid may hang or abort where it ends
 
 
 if __name__ == "__main__":

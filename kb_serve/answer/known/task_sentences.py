@@ -26,28 +26,12 @@ _OWN = (
     'the file keeps it. `ob.get("speed", 0.0)` reads one that may be missing. One that all have, with a default, is '
     "declared: `bpy.types.Object.speed = bpy.props.FloatProperty()`, then `ob.speed`."
 )
-_IN_SIDEBAR = (
-    "A panel in the sidebar (N) of the 3D viewport: `class MINE_PT_panel(bpy.types.Panel):` with "
-    "`bl_label = \"Mine\"`, `bl_space_type = 'VIEW_3D'`, `bl_region_type = 'UI'`, `bl_category = \"My Tab\"` and "
-    '`def draw(self, context): self.layout.operator("object.delete")`, where a button calls an operator; '
-    "`bpy.utils.register_class(MINE_PT_panel)` shows it."
-)
 _ORIGIN = (
     "`bpy.ops.object.origin_set(type='ORIGIN_GEOMETRY')` brings the origins of the selected objects into their middle, "
     "with 'ORIGIN_CURSOR' to the 3D cursor. Without an operator, to `place` in the object's own space: "
     "`ob.data.transform(Matrix.Translation(-place))`, `ob.matrix_world.translation = ob.matrix_world @ place`."
 )
 _PLACED = "In the world: `[ob.matrix_world @ vertex.co for vertex in ob.data.vertices]`, of the mesh without modifiers."
-_ALL_KEYS = (
-    "`ob.animation_data_clear()` removes all keyframes of an object, with its drivers and NLA tracks, and so for other "
-    "data (`ob.data`, `material.node_tree`)."
-)
-_ONE_KEY = '`ob.keyframe_delete("location", frame=10)`.'
-_UNKEYED = (
-    f"{_ALL_KEYS} The keys of one property are an F-Curve of the action's channelbag: "
-    f'`bag.fcurves.remove(bag.fcurves.find("location", index=0))`; one key goes by {_ONE_KEY}'
-)
-_UNKEYED_IN_ACTION = f"{_ALL_KEYS} One key goes by {_ONE_KEY}"
 _LIMITED = (
     'Of a node\'s socket: `limits = socket.bl_rna.properties["default_value"]`, then `limits.hard_min`, `hard_max`, '
     "`soft_min` and `soft_max`, which are of its class; an input of a group has its own: "
@@ -103,23 +87,6 @@ TASK_SENTENCES: tuple[Advice, ...] = (
         ),
         unless=stems("after cloth deformed evaluated group modifier modifiers node nodes shader simulation"),
     ),
-    *(
-        Advice(
-            text,
-            wherever=(
-                stems("animation keyframe keyframes"),
-                stems("clear delete remove"),
-                stems("all every everything whole"),
-            ),
-            unless=stems("bone data marker markers material modifier node strip unused"),
-            since=since,
-            before=before,
-        )
-        for text, since, before in (
-            (_UNKEYED, (4, 4), (99, 0)),
-            (_UNKEYED_IN_ACTION, (0, 0), (4, 4)),
-        )
-    ),
     Advice(
         _LIMITED,
         wherever=(
@@ -164,11 +131,6 @@ TASK_SENTENCES: tuple[Advice, ...] = (
             "icon keyframe keying layer limit list max menu mesh min node normal normals operator panel precision "
             "range setter slider soft step structure subtype template test tooltip types ui unit update"
         ),
-    ),
-    Advice(
-        _IN_SIDEBAR,
-        wherever=(stems("sidebar"), stems("add button create make new panel put register script")),
-        unless=stems("category hide image node open sequencer show toggle width"),
     ),
     Advice(
         _ORIGIN,

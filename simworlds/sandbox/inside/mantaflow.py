@@ -22,7 +22,8 @@ _state = {"hooked": False, "withheld": False}
 
 def mend():
     """To be called before the first fluid domain exists. Once is enough; the hook stays for the process's life."""
-    if not _state["hooked"] and getattr(bpy.app, "module", False):
+    # The bpy of 4.2 does not say that it is one: a program has a path.
+    if not _state["hooked"] and getattr(bpy.app, "module", not bpy.app.binary_path):
         sys.addaudithook(_at_event)
         _state["hooked"] = True
 

@@ -116,15 +116,6 @@ def test_anything_takes_properties_of_its_own(question: str, kb: KnowledgeBase) 
     del bpy.types.Object.speed
 
 
-def test_a_panel_is_put_into_the_sidebar(kb: KnowledgeBase) -> None:
-    head, *lines, register = CODE.findall(told(kb, "how do I add a button to the sidebar"))
-    held: dict[str, Any] = {"bpy": bpy}
-    exec("\n    ".join((head, *lines)), held)
-    exec(register, held)
-    assert bpy.types.MINE_PT_panel.bl_category == "My Tab"
-    bpy.utils.unregister_class(held["MINE_PT_panel"])
-
-
 def test_an_origin_moves_and_what_is_seen_stays(kb: KnowledgeBase) -> None:
     ob, place = cube(), Vector((1, 1, 0))
     ob.scale, ob.rotation_euler.z = (1, 2, 3), 0.5
@@ -165,22 +156,6 @@ def test_vertices_are_placed_in_the_world(kb: KnowledgeBase) -> None:
     updated()
     places = eval(CODE.findall(text)[0], {"ob": ob})
     assert max(place.x for place in places) == pytest.approx(6)
-
-
-def test_all_keyframes_of_an_object_are_removed(kb: KnowledgeBase) -> None:
-    text = told(kb, "delete all keyframes of an object")
-    ob = cube()
-    ob.keyframe_insert("location", frame=10)
-    ob.keyframe_insert("scale", frame=1)
-    animated = ob.animation_data
-    bag = animated.action.layers[0].strips[0].channelbag(animated.action_slot)
-    codes = CODE.findall(text)
-    exec(next(code for code in codes if code.startswith("bag.")), {"bag": bag})
-    assert bag.fcurves.find("location", index=0) is None
-    exec(next(code for code in codes if "keyframe_delete" in code), {"ob": ob})
-    assert {fcurve.data_path for fcurve in bag.fcurves} == {"scale"}
-    exec(codes[0], {"ob": ob})
-    assert ob.animation_data is None
 
 
 def test_a_socket_has_the_limits_of_its_class_or_its_group(kb: KnowledgeBase) -> None:
