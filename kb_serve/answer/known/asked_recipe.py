@@ -81,15 +81,12 @@ class AskedRecipes:
             (-like, number) for number, like in likes.items() if like >= max(_PERHAPS, _AS_LIKE * best)
         )
         first, *others = (self._recipe(number) for _, number in near)
+        head = RECIPE if best >= _LIKELY else f"{RECIPE} of something like it"
         takes = f". It takes {first.takes}." if first.takes else ""
-        also = (
-            f"\nOther recipes, by these names: {'; '.join(other.title for other in others)}."
-            if others
-            else ""
-        )
-        return AskedRecipe(
-            f"{RECIPE}: {first.title}{takes}\n```python\n{first.code}\n```{also}", best >= _SURE
-        )
+        text = f"{head}: {first.title}{takes}\n```python\n{first.code}\n```"
+        if others:
+            text += f"\nOther recipes, by these names: {'; '.join(other.title for other in others)}."
+        return AskedRecipe(text, best)
 
     def likes(self, concepts: Sequence[Concept]) -> dict[int, float]:
         """How much a question is like each recipe that it is like at all, by numbers, at most 1: how much of one of its
