@@ -11,7 +11,9 @@ from kb_serve.rank.asked_words import SCRIPT_WORDS
 if TYPE_CHECKING:
     from collections.abc import Set
 
-_SENTENCES = re.compile(r"(?<=[.!?])\s+|(?<=[.!?][\"')])\s+")
+_SENTENCES = re.compile(
+    r"(?<=[\w)\"'!?][.!?])\s+|(?<=[.!?][\"')])\s+"
+)  # not behind the dot of ``from . import``
 _TILL_COLON = re.compile(r"^([^.!?:]{1,80}):\s+")
 _ABBREVIATIONS = re.compile(r"\b(?:e\.\s?g|i\.\s?e)\b\.?[,:]?", re.IGNORECASE)
 _GREETING = re.compile(

@@ -61,6 +61,7 @@ def test_an_abbreviation_is_no_code() -> None:
         "write the script in VS Code and reload it each time",
         "Blender as a python module: what does not work",
         "RuntimeError: Error: Object 'Cube' already in collection 'Scene Collection'",
+        "from . import operators, ui",
         "frame.strokes.new(); stroke.points.add(10)",
         "ValueError: register_class(...): already registered as a subclass 'HairPanel'",
         "select vertices (all)",
