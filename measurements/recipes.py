@@ -7,10 +7,11 @@ the ways to write it where there are several.
 from __future__ import annotations
 
 import json
+import re
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from bench.markdown_tables import Table
 from kb_build.recipes.tables import recipes_for
@@ -35,8 +36,16 @@ _VERSIONS = ("3.4", "4.2", "4.5", "5.0", "5.1", "5.2")
 _RUNNER = Path(__file__).parent / "scripts" / "run_recipes.py"
 _SECONDS = 600.0
 _RUN = ("Blender", "recipes", "did their task")
-_ASKED = ("questions", "asked", "answered", "with a recipe", "answered, of these")
+_ASKED = (
+    "questions",
+    "asked",
+    "answered",
+    "with a recipe",
+    "answered, of these",
+    "answered, recipes left out",
+)
 _NOTE = f"Answered: all that the code needs stands in the first {LINES} lines."
+_BLOCK = re.compile(rf"{re.escape(RECIPE)}.*?\n```python\n.*?\n```\n+(?:Other recipes.*\n+)?", re.DOTALL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +59,14 @@ class TaskQuery:
         """Whether the beginning of an answer has all."""
         begin = "\n".join(text.splitlines()[:LINES])
         return all(any(way in begin for way in ways) for ways in self.needs)
+
+
+class Outcome(NamedTuple):
+    """Whether a question is answered, whether it has a recipe, and whether it is answered without that."""
+
+    answered: bool
+    has_recipe: bool
+    answered_without: bool
 
 
 def read_tasks(path: Path) -> list[TaskQuery]:
@@ -98,8 +115,8 @@ def measure(setting: Setting) -> ReportPart:
             *(
                 TargetFigure(
                     f"answered_{name}",
-                    _share([answered for answered, _ in outcomes]),
-                    f"{sum(answered for answered, _ in outcomes)} of {len(outcomes)}",
+                    _share([outcome.answered for outcome in outcomes]),
+                    f"{sum(outcome.answered for outcome in outcomes)} of {len(outcomes)}",
                 )
                 for name, outcomes in asked.items()
             ),
@@ -129,23 +146,26 @@ def _run(setting: Setting) -> tuple[list[tuple[str, ...]], list[str]]:
     return rows, faults
 
 
-def _ask(base: Path, queries: Sequence[TaskQuery]) -> list[tuple[bool, bool]]:
-    """For each question whether it is answered, and whether by a recipe."""
+def _ask(base: Path, queries: Sequence[TaskQuery]) -> list[Outcome]:
     say("recipes: asking for tasks")
     with KnowledgeBase(base) as knowledge:
         answers = [knowledge.query(query.query).text for query in queries]
-    return [(query.is_answered(text), RECIPE in text) for query, text in zip(queries, answers, strict=True)]
+    return [
+        Outcome(query.is_answered(text), RECIPE in text, query.is_answered(_BLOCK.sub("", text)))
+        for query, text in zip(queries, answers, strict=True)
+    ]
 
 
 def _share(outcomes: Sequence[bool]) -> float:
     return sum(outcomes) / max(1, len(outcomes))
 
 
-def _cells(outcomes: Sequence[tuple[bool, bool]]) -> tuple[str, ...]:
-    by_recipe = [answered for answered, has_recipe in outcomes if has_recipe]
+def _cells(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
+    by_recipe = [outcome.answered for outcome in outcomes if outcome.has_recipe]
     return (
         str(len(outcomes)),
-        f"{_share([answered for answered, _ in outcomes]):.3f}",
+        f"{_share([outcome.answered for outcome in outcomes]):.3f}",
         str(len(by_recipe)),
         f"{_share(by_recipe):.3f}",
+        f"{_share([outcome.answered_without for outcome in outcomes]):.3f}",
     )
