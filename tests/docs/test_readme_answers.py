@@ -68,6 +68,10 @@ ANSWERED = {
         "RigdBodyObject.colision_shape": "does not exist; read as `RigidBodyObject`.",
     },
     "ranked candidates": {"stop fabric from passing through itself": "candidates"},
+    "a recipe": {
+        "put a png texture on a material": "Give an object a material that shows an image",
+        "join several meshes": "Join several mesh objects into one",
+    },
     "an overview": {"cloth": "page", "rigid body": "page", "uv": "page"},
 }
 
@@ -89,4 +93,5 @@ def test_what_can_be_asked_is_answered_so(base: Path, query: str, expected: str)
         if expected == "page" and query == "uv" and kb.page("modeling/meshes/uv/index") is None:
             pytest.skip("the base was built without the manual's page")
     told = {answer.hits[0].id, answer.kind}
+    told.update(re.findall(r"\*\*Recipe\*\*: ([^.\n]+)", answer.text))
     assert expected in told or any(expected in note for note in answer.notes)

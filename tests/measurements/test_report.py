@@ -69,7 +69,10 @@ def test_rejects_an_unknown_part_and_lists_parts(capsys: pytest.CaptureFixture[s
     with pytest.raises(SystemExit) as ended:
         main(["--only", "retrieval,speed"])
     assert ended.value.code == 2
-    assert "speed: the parts are retrieval, names, recipes, compound, invented, defaults" in capsys.readouterr().err
+    assert (
+        "speed: the parts are retrieval, names, recipes, compound, invented, defaults"
+        in capsys.readouterr().err
+    )
 
 
 def test_an_invalid_base_is_an_error_without_traceback(
