@@ -83,7 +83,7 @@ def run_recipes(recipes: Sequence[Recipe], runtime: Runtime) -> list[str]:
     errors: list[str] = []
     while len(errors) < len(recipes):
         told, ended = _errors_until_it_ends(recipes[len(errors) :], runtime)
-        errors += told or [ended]
+        errors += told or [ended or "It ends Blender."]
     return errors
 
 

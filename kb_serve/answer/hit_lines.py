@@ -42,6 +42,7 @@ class HitLines:
         """
         before = [*self.by_path(first)]
         further = list(zip(hits, rows, strict=True))
+        self._reader.entry.load(hit.id.rpartition(".")[0] for hit in hits if hit.kind == "function")
         made = self._reader.makers.creations([hit.id for hit in hits if hit.kind == "class"])
         for title, name, are_pages in (
             ("In Python", NAMES, False),

@@ -11,9 +11,8 @@ from kb_serve.rank.asked_words import SCRIPT_WORDS
 if TYPE_CHECKING:
     from collections.abc import Set
 
-_SENTENCES = re.compile(
-    r"(?<=[\w)\"'!?][.!?])\s+|(?<=[.!?][\"')])\s+"
-)  # not behind the dot of ``from . import``
+# Not behind the dot of ``from . import``.
+_SENTENCES = re.compile(r"(?<=[\w)\"'!?][.!?])\s+|(?<=[.!?][\"')])\s+")
 _TILL_COLON = re.compile(r"^([^.!?:]{1,80}):\s+")
 _ABBREVIATIONS = re.compile(r"\b(?:e\.\s?g|i\.\s?e)\b\.?[,:]?", re.IGNORECASE)
 _GREETING = re.compile(
@@ -39,7 +38,7 @@ _WORDS = frozenset(
     recommended right scripting scripts simple simplest solution somebody someone something stuck suggestion
     suggestions sure tell thank thanks think thx today tried tries try trying tutorial understand unsure use using
     ve version welcome wondering work working works write writing wrong
-    """.split()  # noqa: SIM905 - likewise
+    """.split()  # noqa: SIM905 - so many words read best as a paragraph
 )
 _ASIDE = re.compile(r"\s+\(([^()]*)\)")
 _OF_BLENDER = frozenset({"blender", "bpy", "python"})
@@ -48,7 +47,9 @@ _LETTERS = re.compile(r"[^\W\d]")
 
 
 def without_frame(text: str) -> str:
-    """A text without the sentences that ask nothing; as it is where no other is left."""
+    """A text without the sentences that ask nothing; as it is where no other is left, and where it is one name."""
+    if " " not in text:
+        return text
     asked = " ".join(_ABBREVIATIONS.sub("", text).split())
     for pattern in (_GREETING, _THANKS):
         asked = pattern.sub("", asked) or asked

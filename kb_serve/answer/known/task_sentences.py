@@ -1,4 +1,4 @@
-"""What scripts write for tasks that take several calls, none of which says so: copies, lasting normals, whole turns."""
+"""What scripts write for tasks that no symbol tells of by itself: what lies beside an edge, normals in the world."""
 
 from __future__ import annotations
 

@@ -74,12 +74,16 @@ def test_a_recipe_that_does_not_do_its_task_is_told() -> None:
     broken = Recipe("Broken", "", (), "0.0", "99.0", "import bpy", "x = 1\nbpy.nothing", "assert x")
     idle = Recipe("Idle", "", (), "0.0", "99.0", "import bpy", "x = 0", "assert x")
     fatal = Recipe("Fatal", "", (), "0.0", "99.0", "import os", "os.abort()", "")
+    leaving = Recipe("Leaving", "", (), "0.0", "99.0", "import sys", "sys.exit()", "")
     sound = Recipe("Sound", "", (), "0.0", "99.0", "import bpy", "x = 1", "assert x")
-    first, second, ended, third = run_recipes([broken, idle, fatal, sound], find_runtime(None, home=REPO))
+    first, second, ended, left, third = run_recipes(
+        [broken, idle, fatal, leaving, sound], find_runtime(None, home=REPO)
+    )
     assert first.startswith("AttributeError: ")
     assert first.endswith("(bpy.nothing)")
     assert second == "AssertionError:  (assert x)"
     assert "SIGABRT" in ended
+    assert left
     assert third == ""
 
 
