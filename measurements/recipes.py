@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import re
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -18,6 +17,7 @@ from kb_build.recipes.tables import recipes_for
 from kb_check.migrate.trial import runtime_at_hand
 from kb_serve.answer.known.asked_recipe import RECIPE
 from kb_serve.knowledge_base import KnowledgeBase
+from measurements.compound import read_compound
 from measurements.report import ReportPart, TargetFigure
 from measurements.setting import QUERIES, say
 from simworlds.sandbox.errors import ProgramFailed
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kb_build.recipes.tables import Recipe
+    from measurements.compound import CompoundQuery
     from measurements.setting import Setting
     from simworlds.sandbox.runtime import Runtime
 
@@ -48,19 +49,6 @@ _NOTE = f"Answered: all that the code needs stands in the first {LINES} lines."
 _BLOCK = re.compile(rf"{re.escape(RECIPE)}.*?\n```python\n.*?\n```\n+(?:Other recipes.*\n+)?", re.DOTALL)
 
 
-@dataclass(frozen=True, slots=True)
-class TaskQuery:
-    """A question for a task; ``needs`` has for each thing that code must have the ways to write it."""
-
-    query: str
-    needs: tuple[tuple[str, ...], ...]
-
-    def is_answered(self, text: str) -> bool:
-        """Whether the beginning of an answer has all."""
-        begin = "\n".join(text.splitlines()[:LINES])
-        return all(any(way in begin for way in ways) for ways in self.needs)
-
-
 class Outcome(NamedTuple):
     """Whether a question is answered, whether it has a recipe, and whether it is answered without that."""
 
@@ -69,10 +57,10 @@ class Outcome(NamedTuple):
     answered_without: bool
 
 
-def read_tasks(path: Path) -> list[TaskQuery]:
-    """The questions of a file (corpora/queries/README.md has its format)."""
-    rows = [json.loads(line) for line in path.read_text("utf-8").splitlines()]
-    return [TaskQuery(row["query"], tuple(map(tuple, row["needs"]))) for row in rows]
+def is_answered(query: CompoundQuery, text: str) -> bool:
+    """Whether the beginning of an answer has all that the code must have, written in one of its ways."""
+    begin = "\n".join(text.splitlines()[:LINES])
+    return all(any(way in begin for way in ways) for ways in query.expect_all)
 
 
 def run_recipes(recipes: Sequence[Recipe], runtime: Runtime) -> list[str]:
@@ -106,7 +94,7 @@ def measure(setting: Setting) -> ReportPart:
     """Runs the recipes in the Blenders that are here, and asks the questions of both sets."""
     ran, faults = _run(setting)
     run, done = (sum(int(row[place]) for row in ran) for place in (1, 2))
-    asked = {name: _ask(setting.base, read_tasks(QUERIES / f"{name}.jsonl")) for name in SETS}
+    asked = {name: _ask(setting.base, read_compound(QUERIES / f"{name}.jsonl")) for name in SETS}
     rows = tuple((name, *_cells(outcomes)) for name, outcomes in asked.items())
     return ReportPart(
         "recipes",
@@ -146,12 +134,12 @@ def _run(setting: Setting) -> tuple[list[tuple[str, ...]], list[str]]:
     return rows, faults
 
 
-def _ask(base: Path, queries: Sequence[TaskQuery]) -> list[Outcome]:
+def _ask(base: Path, queries: Sequence[CompoundQuery]) -> list[Outcome]:
     say("recipes: asking for tasks")
     with KnowledgeBase(base) as knowledge:
         answers = [knowledge.query(query.query).text for query in queries]
     return [
-        Outcome(query.is_answered(text), RECIPE in text, query.is_answered(_BLOCK.sub("", text)))
+        Outcome(is_answered(query, text), RECIPE in text, is_answered(query, _BLOCK.sub("", text)))
         for query, text in zip(queries, answers, strict=True)
     ]
 
