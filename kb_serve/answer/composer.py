@@ -19,7 +19,7 @@ from kb_serve.answer.hit_answers import HitAnswers
 from kb_serve.answer.hit_blocks import HitBlocks
 from kb_serve.answer.hit_lines import NAMES, PAGES, HitLines
 from kb_serve.answer.hits import hits_of
-from kb_serve.answer.known.asked_recipe import AskedRecipes
+from kb_serve.answer.known.asked_recipe import AskedRecipes, clauses_of
 from kb_serve.answer.known.practice import HOW_TO, Practice
 from kb_serve.answer.query_text import in_one_line, is_plain
 from kb_serve.answer.question_frame import without_frame
@@ -115,7 +115,7 @@ class AnswerComposer:
             if ranking.notes or told
             else [*self._known(hits[:1] if ranking.named else hits[:_KNOWN_OF], text, is_named=ranking.named)]
         )
-        known, recipe = _one_way(known, self._recipe(text))
+        known, recipe = _one_way(known, self._recipe(text, clauses_of(text)))
         said = (*ranking.notes, *known, ranking.alike, *self._source_notes(ranking, hits))
         notes = tuple(dict.fromkeys(filter(None, said)))
         if not hits:
@@ -133,11 +133,11 @@ class AnswerComposer:
             blocks = self._told.named(hits, rows, text, names, members)
         return draft_of(kind, hits, notes, _with_recipe(blocks, recipe))
 
-    def _recipe(self, text: str) -> AskedRecipe | None:
-        """The few lines that do the task of a question."""
+    def _recipe(self, text: str, clauses: Sequence[str] = ()) -> AskedRecipe | None:
+        """The few lines that do the task of a question, or of one of its clauses."""
         if is_message(text) or sum(map(str.isalpha, text.split())) < _LEAST_PROSE:
             return None
-        return self._recipes.find(self._ranker.searcher.words.concepts(text))
+        return self._recipes.find(text, self._ranker.searcher.words.concepts, clauses)
 
     def _likely_recipe(self, text: str) -> AskedRecipe | None:
         recipe = self._recipe(text)

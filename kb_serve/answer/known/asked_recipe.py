@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 from array import array
 from collections import defaultdict
 from functools import cached_property
@@ -11,7 +13,7 @@ from kb_serve.rank.asked_words import SCRIPT_WORDS
 from simworlds.schemas.value_class import value_class
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from kb_serve.rank.scoring import Concept
     from kb_serve.reader import BaseReader
@@ -23,6 +25,11 @@ _SURE = 0.8  # … that it asks for, and for nothing like that
 _AS_LIKE = 0.85  # of the best, from which on another may be meant
 _OF_PHRASE = 0.15  # how much it counts that a phrase says of the question itself what its recipe knows of it
 _LEAST_WORDS = 2
+_ASKING = 0.8  # how much all of a question counts as like what its clause asks for that asks how
+_CLAUSE_END = re.compile(r"(?<=[\w)\"'][.!?:;,])\s+|\s+-+>?\s+")
+_ASKS_HOW = re.compile(
+    r"\b(?:how (?:do|can|could|would|should|to)|(?:want|need|like|way) to)\b.*[^,:;]$", re.IGNORECASE
+)
 
 
 class Recipe(NamedTuple):
@@ -71,9 +78,13 @@ class AskedRecipes:
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
 
-    def find(self, concepts: Sequence[Concept]) -> AskedRecipe | None:
-        """The recipe that a question asks for, and what others it may mean; None if it asks for none."""
-        likes = self.likes(concepts)
+    def find(
+        self, text: str, concepts_of: Callable[[str], Sequence[Concept]], clauses: Sequence[str] = ()
+    ) -> AskedRecipe | None:
+        """The recipe that a question asks for, as a whole or by one of its ``clauses``, and what others it may mean;
+        None if it asks for none.
+        """
+        likes = self._likes_of_parts(text, concepts_of, clauses)
         best = max(likes.values(), default=0.0)
         if best < _PERHAPS:
             return None
@@ -87,6 +98,21 @@ class AskedRecipes:
         if others:
             text += f"\nOther recipes, by these names: {'; '.join(other.title for other in others)}."
         return AskedRecipe(text, best)
+
+    def _likes_of_parts(
+        self, text: str, concepts_of: Callable[[str], Sequence[Concept]], clauses: Sequence[str]
+    ) -> dict[int, float]:
+        """How much a question is like each recipe or, where that is more, the mean of this and of how much a clause is:
+        the others tell what it is for. A clause that asks how counts almost alone.
+        """
+        likes = self.likes(concepts_of(text))
+        best = dict(likes)
+        for clause in clauses:
+            least = _ASKING if _ASKS_HOW.search(clause) else 0.0
+            for number, like in self.likes(concepts_of(clause)).items():
+                mean = math.sqrt(like * max(likes.get(number, 0.0), least))
+                best[number] = max(best.get(number, 0.0), mean)
+        return best
 
     def likes(self, concepts: Sequence[Concept]) -> dict[int, float]:
         """How much a question is like each recipe that it is like at all, by numbers, at most 1: how much of one of its
@@ -139,6 +165,14 @@ class AskedRecipes:
         except (IndexError, TypeError, ValueError) as error:
             raise self._reader.damaged(error) from error
         return _Words(rarity, phrases, recipes, recipe_of, weights)
+
+
+def clauses_of(text: str) -> list[str]:
+    """The clauses of a question, of which one may ask and others tell what it is for; none where it is of one alone.
+    What ends amid brackets is part of an expression.
+    """
+    clauses = _CLAUSE_END.split(text)
+    return [part for part in clauses if part.count("(") == part.count(")")] if len(clauses) > 1 else []
 
 
 def _tells(word: str) -> bool:

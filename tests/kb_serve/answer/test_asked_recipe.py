@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.recipes.tables import recipes_for
-from kb_serve.answer.known.asked_recipe import RECIPE, AskedRecipes
+from kb_serve.answer.known.asked_recipe import RECIPE, AskedRecipes, clauses_of
 from kb_serve.errors import BaseUnreadable
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.rank.search import Searcher
@@ -71,10 +71,39 @@ def test_the_recipe_comes_first_with_what_it_takes(kb: KnowledgeBase, ours: list
         ("how to make a material transparent in eevee", "Make a material transparent"),
         ("grease pencil add stroke python", "Draw a grease pencil stroke"),
         ("render from several cameras in a loop and save each image", "Render the scene from each camera"),
+        (
+            "My town has four hundred houses with tiles from a photo pack. How do I pack all images into the file?",
+            "Pack all images into the blend file",
+        ),
+        (
+            "The turbine of my mill stands still - spin an object around forever, as slow as the wind",
+            "Spin an object around forever",
+        ),
     ],
 )
 def test_a_question_in_other_words_finds_it(question: str, title: str, kb: KnowledgeBase) -> None:
     assert f"{RECIPE}: {title}" in kb.query(question).text
+
+
+def test_what_one_clause_alone_asks_for_is_not_what_the_question_does(kb: KnowledgeBase) -> None:
+    """A recipe of which the rest of the question knows nothing is not told first."""
+    text = kb.query("set the font of a text object, or write the vertex weights of a garment to a table").text
+    assert f"{RECIPE}: Set the font of a text object" not in text.partition("## ")[0]
+
+
+@pytest.mark.parametrize(
+    ("text", "clauses"),
+    [
+        ("paint a wall", []),
+        ("paint a wall.", []),
+        ("I have a wall. Paint it, please", ["I have a wall.", "Paint it,", "please"]),
+        ("noise -> ramp --> colour", ["noise", "ramp", "colour"]),
+        ('row.property(scene, "frame_start") fails, why', ["why"]),
+        ("use .blend files of Blender 5.1", []),
+    ],
+)
+def test_a_question_has_clauses(text: str, clauses: list[str]) -> None:
+    assert clauses_of(text) == clauses
 
 
 def test_no_answer_is_longer_for_a_recipe_than_it_may_be(kb: KnowledgeBase, ours: list[Recipe]) -> None:
