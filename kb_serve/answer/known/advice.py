@@ -214,6 +214,19 @@ _UNREAD = (
     "`bpy.data.images['Render Result']` has no pixels to read, its size is 0 × 0: save it "
     "(`image.save_render(path)`), load that (`bpy.data.images.load(path)`), and read the loaded one's `pixels`."
 )
+_UNREAD_LAYERS = (
+    "Python reads no pixels of a multilayer EXR: the size of the loaded image is 0 × 0. Write each pass to a file of "
+    "its own and load that."
+)
+_OWN_SELECTION = (
+    "An override does not reach everything: `mode_set`, `select_all`, `location_clear` and its like, "
+    "`material_slot_remove_unused`, and the exporters of OBJ, STL, PLY, glTF and USD act on what the view layer itself "
+    "has selected, or active. Set that: `ob.select_set(True)`, `view_layer.objects.active = ob`."
+)
+_LEFT_ALONE = (
+    "`frame_set` evaluates what the view layers show: a material or light that nothing visible uses stays as it was, "
+    "animated or not, and so does an object that is hidden (`hide_viewport`) or in an excluded collection."
+)
 _SLOTTED = (
     "An action moves nothing until one of its slots is given, too, which `x.action = action` need not do: set "
     "`x.action_slot = x.action_suitable_slots[0]` after it, or, of an action that has no slot yet, "
@@ -438,6 +451,34 @@ ADVICE: tuple[Advice, ...] = (
         asked=stems("weight group vertex"),
     ),
     Advice(_OF_AOV, of("View3DShading.render_pass"), asked=stems("aov")),
+    Advice(_OWN_SELECTION, of("Context.temp_override")),
+    Advice(
+        _OWN_SELECTION,
+        frozenset(
+            {
+                "bpy.ops.export_scene.gltf",
+                "bpy.ops.object.location_clear",
+                "bpy.ops.object.material_slot_remove_unused",
+                "bpy.ops.object.mode_set",
+                "bpy.ops.object.select_all",
+                "bpy.ops.wm.obj_export",
+                "bpy.ops.wm.ply_export",
+                "bpy.ops.wm.stl_export",
+                "bpy.ops.wm.usd_export",
+            }
+        ),
+        asked=stems("override temp_override selected_objects active_object"),
+    ),
+    Advice(
+        _LEFT_ALONE,
+        of("Scene.frame_set"),
+        asked=stems("animated animation evaluate evaluated material stay stays same unchanged update"),
+    ),
+    Advice(
+        _UNREAD_LAYERS,
+        wherever=(stems("multilayer"), stems("0 empty load loaded pixels read reading size zero")),
+        unless=stems("save write"),
+    ),
     Advice(_JOINED, frozenset({"bpy.ops.object.join"})),
     Advice(_NO_BONE, of("ArmatureEditBones.new")),
     Advice(_FLAT, of("MeshPolygon.use_smooth")),

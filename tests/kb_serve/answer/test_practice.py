@@ -975,3 +975,83 @@ def test_smooth_by_angle_is_added_by_an_operator(kb: KnowledgeBase) -> None:
     bpy.ops.mesh.primitive_cube_add()
     bpy.ops.object.shade_auto_smooth(angle=0.5)
     assert [modifier.type for modifier in bpy.context.object.modifiers] == ["NODES"]
+
+
+# What an override, a frame and an image do not reach
+
+
+def two_meshes() -> tuple[Any, Any]:
+    """Two objects with meshes; the second is selected and active."""
+    first, second = (bpy.data.objects.new(name, bpy.data.meshes.new(name)) for name in ("first", "second"))
+    for place, obj in enumerate((first, second)):
+        obj.data.from_pydata([(place, 0, 0), (place, 1, 0), (place, 0, 1)], [], [(0, 1, 2)])
+        bpy.context.scene.collection.objects.link(obj)
+    bpy.context.view_layer.objects.active = second
+    second.select_set(True)
+    return first, second
+
+
+def overridden(obj: Any) -> Any:
+    return bpy.context.temp_override(
+        object=obj, active_object=obj, selected_objects=[obj], selected_editable_objects=[obj]
+    )
+
+
+@pytest.mark.parametrize("exporter", ["obj_export", "stl_export", "ply_export"])
+def test_an_override_does_not_choose_what_is_exported(
+    reader: BaseReader, exporter: str, tmp_path: Path
+) -> None:
+    first, _ = two_meshes()
+    path = tmp_path / "exported"
+    words = {} if exporter == "obj_export" else {"ascii_format": True}
+    with overridden(first):
+        getattr(bpy.ops.wm, exporter)(filepath=str(path), export_selected_objects=True, **words)
+    points = re.findall(
+        r"^\s*(?:vertex |v )?(-?[\d.]+) -?[\d.]+ -?[\d.]+$", path.read_text("utf-8"), re.MULTILINE
+    )
+    assert {float(point) for point in points} == {1.0}
+    assert "act on what the view layer itself has" in said(
+        reader, f"bpy.ops.wm.{exporter}", "temp_override selected_objects and export"
+    )
+
+
+def test_an_override_does_not_choose_whose_mode_is_set(reader: BaseReader) -> None:
+    first, second = two_meshes()
+    with overridden(first):
+        bpy.ops.object.mode_set(mode="EDIT")
+    assert (first.mode, second.mode) == ("OBJECT", "EDIT")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert "`view_layer.objects.active = ob`" in said(reader, f"{TYPES}Context.temp_override")
+
+
+def test_a_frame_evaluates_what_is_shown(reader: BaseReader) -> None:
+    obj, _ = two_meshes()
+    material = bpy.data.materials.new("material")
+    for frame, shade in ((1, 0.0), (11, 1.0)):
+        material.diffuse_color = (shade, shade, shade, 1)
+        material.keyframe_insert("diffuse_color", frame=frame)
+    bpy.context.scene.frame_set(6)
+    assert material.diffuse_color[0] == 1
+    obj.data.materials.append(material)
+    bpy.context.scene.frame_set(6)
+    assert 0 < material.diffuse_color[0] < 1
+    assert "stays as it was" in said(reader, f"{TYPES}Scene.frame_set", "the material stays the same")
+
+
+def test_python_reads_no_pixels_of_a_multilayer_image(reader: BaseReader, tmp_path: Path) -> None:
+    scene, path = bpy.context.scene, tmp_path / "layers.exr"
+    scene.camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+    scene.collection.objects.link(scene.camera)
+    scene.render.engine, scene.cycles.samples = "CYCLES", 1
+    scene.render.resolution_x = scene.render.resolution_y = 8
+    settings = scene.render.image_settings
+    if hasattr(settings, "media_type"):
+        settings.media_type = "MULTI_LAYER_IMAGE"
+    settings.file_format = "OPEN_EXR_MULTILAYER"
+    scene.render.filepath = str(path)
+    bpy.ops.render.render(write_still=True)
+    image = bpy.data.images.load(str(path))
+    assert (tuple(image.size), len(image.pixels)) == ((0, 0), 0)
+    assert "Write each pass to a file" in said(
+        reader, f"{TYPES}Image.size", "size of a loaded multilayer exr is 0"
+    )
