@@ -55,6 +55,10 @@ _HELD = (
     '`body.kinematic = True`, `body.keyframe_insert("kinematic", frame=29)`, then `body.kinematic = False`, '
     '`body.keyframe_insert("kinematic", frame=30)`.'
 )
+_MULTIPLIED = (
+    "Of two bodies that touch the product counts: 0.5 on 0.5 acts as 0.25 on 1 does, and nothing on 0 slows down, or "
+    "bounces."
+)
 _CACHED = (
     "A simulation ends with its point cache, at frame 250 unless that is told otherwise, whatever the scene's "
     "`frame_end` is: `scene.rigidbody_world.point_cache.frame_end = 500`, for cloth and soft bodies that of the "
@@ -451,6 +455,7 @@ ADVICE: tuple[Advice, ...] = (
         asked=stems("weight group vertex"),
     ),
     Advice(_OF_AOV, of("View3DShading.render_pass"), asked=stems("aov")),
+    Advice(_MULTIPLIED, of("RigidBodyObject.friction", "RigidBodyObject.restitution")),
     Advice(_OWN_SELECTION, of("Context.temp_override")),
     Advice(
         _OWN_SELECTION,

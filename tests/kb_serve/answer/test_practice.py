@@ -9,6 +9,7 @@ import subprocess
 import sys
 import warnings
 import wave
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -975,6 +976,27 @@ def test_smooth_by_angle_is_added_by_an_operator(kb: KnowledgeBase) -> None:
     bpy.ops.mesh.primitive_cube_add()
     bpy.ops.object.shade_auto_smooth(angle=0.5)
     assert [modifier.type for modifier in bpy.context.object.modifiers] == ["NODES"]
+
+
+def bounce_of(body: float, floor: float) -> float:
+    """How high a cube comes back that falls on a floor, each with its restitution."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    for height, width, kind, restitution in ((-1, 20, "PASSIVE", floor), (4, 1, "ACTIVE", body)):
+        bpy.ops.mesh.primitive_cube_add(location=(0, 0, height), scale=(width, width, 1))
+        bpy.ops.rigidbody.object_add(type=kind)
+        bpy.context.object.rigid_body.restitution = restitution
+    obj, heights = bpy.context.object, []
+    for frame in range(1, 50):
+        bpy.context.scene.frame_set(frame)
+        heights.append(obj.matrix_world.translation.z)
+    turns = next(place for place, (now, then) in enumerate(pairwise(heights)) if now < then)
+    return max(heights[turns:])
+
+
+def test_two_bodies_bounce_by_the_product(reader: BaseReader) -> None:
+    assert bounce_of(0.9, 0.9) == pytest.approx(bounce_of(0.81, 1), abs=1e-3)
+    assert bounce_of(0.9, 0.9) > bounce_of(0.9, 0.5) + 0.5
+    assert "the product counts" in said(reader, f"{TYPES}RigidBodyObject.restitution")
 
 
 # What an override, a frame and an image do not reach
