@@ -103,7 +103,7 @@ class AnswerComposer:
         is_name = (" " not in text or "[" in text) and self._reader.entry(text)
         topic = "" if is_name or ranking.recognition.removed else self._topics.find(text)
         if topic:
-            return self._overview(topic, ranking, limit)
+            return self._overview(topic, ranking, limit, self._recipe(text))
         names = [match for match in ranking.recognition.matches if match.sure >= SURE]
         is_named = ranking.named or any(match.why != "enum item" for match in names)
         if not is_named and (parts := parts_of(text)):
@@ -131,7 +131,8 @@ class AnswerComposer:
             names = ranking.recognition.arguments.get(hits[0].id, ())
             kind = "page" if hits[0].is_page else "schema"
             blocks = self._told.named(hits, rows, text, names, members)
-        return draft_of(kind, hits, notes, _with_recipe(blocks, recipe))
+        is_first = recipe is not None and (recipe.is_said if ranking.named else recipe.is_likely)
+        return draft_of(kind, hits, notes, _with_recipe(blocks, recipe, is_first=is_first))
 
     def _recipe(self, text: str, clauses: Sequence[str] = ()) -> AskedRecipe | None:
         """The few lines that do the task of a question, or of one of its clauses."""
@@ -253,7 +254,8 @@ class AnswerComposer:
             without = " and the ".join(missing)
             yield f"This base was built without the {without}; `simworlds kb info {minor}` says why."
 
-    def _overview(self, topic: str, ranking: Ranking, limit: int) -> Draft:
+    def _overview(self, topic: str, ranking: Ranking, limit: int, recipe: AskedRecipe | None = None) -> Draft:
+        """What there is on a topic; a page with the title of a task is told behind the recipe for that."""
         overview = self._topics.overview(topic)
         lead = overview.settings[:_SETTINGS]
         ids = dict.fromkeys((topic, *lead, *overview.members, *(row.id for row in ranking.ranked)))
@@ -267,6 +269,7 @@ class AnswerComposer:
             () if overview.says_how else [*self._blocks.excerpt(hits[0], RankedId(topic, 1.0, "topic"))][1:]
         )
         blocks = (
+            *_recipe_block(recipe if recipe and recipe.is_said else None),
             *overview.first,
             *page,
             *self._lines.further(hits_of(rows, self._reader), rows),
@@ -286,12 +289,13 @@ def _recipe_block(recipe: AskedRecipe | None) -> list[AnswerBlock]:
     return [AnswerBlock(recipe.text, "recipe")] if recipe else []
 
 
-def _with_recipe(blocks: Iterable[AnswerBlock], recipe: AskedRecipe | None) -> list[AnswerBlock]:
+def _with_recipe(
+    blocks: Iterable[AnswerBlock], recipe: AskedRecipe | None, *, is_first: bool
+) -> list[AnswerBlock]:
     """An answer behind the recipe that is asked for, or with one that may be of use behind the best hit."""
     others = [*blocks]
-    told = 0
-    if recipe and not recipe.is_likely:
-        told = next((place for place, block in enumerate(others) if block.name in _BESIDE), len(others))
+    beside = (place for place, block in enumerate(others) if block.name in _BESIDE)
+    told = 0 if is_first else next(beside, len(others))
     return [*others[:told], *_recipe_block(recipe), *others[told:]]
 
 

@@ -22,6 +22,7 @@ RECIPE = "**Recipe**"  # begins one in an answer
 _PERHAPS = 0.5  # how much a question is like a recipe that may be of use to it
 _LIKELY = 0.6  # … that it asks for
 _SURE = 0.8  # … that it asks for, and for nothing like that
+_SAID = 0.95  # … that it asks for word by word
 _AS_LIKE = 0.85  # of the best, from which on another may be meant
 _OF_PHRASE = 0.15  # how much it counts that a phrase says of the question itself what its recipe knows of it
 _LEAST_WORDS = 2
@@ -55,6 +56,11 @@ class AskedRecipe(NamedTuple):
     def is_sure(self) -> bool:
         """Whether the question asks for it and for nothing like it."""
         return self.like >= _SURE
+
+    @property
+    def is_said(self) -> bool:
+        """Whether the question has all words of a phrase that asks for it, and hardly another."""
+        return self.like >= _SAID
 
 
 @value_class

@@ -133,6 +133,8 @@ def test_who_names_something_or_asks_for_no_task_gets_none(kb: KnowledgeBase, qu
         "remove grease pencil strokes",
         "limit distance between objects constraint",
         "curve to mesh node",
+        "data transfer modifier",
+        "particle instance modifier",
     ],
 )
 def test_what_may_be_of_use_stands_behind_what_was_found(kb: KnowledgeBase, query: str) -> None:
