@@ -87,6 +87,15 @@ def test_without_a_key_make_fails_with_exit_code_2_and_says_what_to_do(alone: No
     assert not (tmp_path / "run").exists()
 
 
+def test_without_a_blender_no_run_is_made(alone: None, home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ANTHROPIC_API_KEY", "any")
+    result = said("make", "A crate", "--blender-exe", "/bin/true")
+    assert result.exit_code == 2
+    assert "No Blender was found: /bin/true is not Blender" in result.stderr
+    assert "resume" not in result.output
+    assert not [*(home / "runs").glob("*")]
+
+
 def test_a_limit_that_is_reached_is_exit_code_3(home: Path, tmp_path: Path) -> None:
     root = tmp_path / "run"
     with answered(home, Team()) as api:
@@ -115,7 +124,7 @@ def test_a_limit_that_is_reached_is_exit_code_3(home: Path, tmp_path: Path) -> N
         (("make", "A crate", "--run", "/proc/nothing"), "cannot be used as the folder of a run"),
         (
             ("demo", "edit", "--run", "/proc/nothing"),
-            "folder /proc/nothing-input cannot be made: No such file",
+            "folder /proc/nothing-input cannot be used: /proc/nothing-input: No such file",
         ),
     ],
 )
