@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from agents.blender.files.run_folder import roots
 from agents.blender.launch import runs_folder
 from agents.loop.errors import NoRun
 from agents.loop.record.elsewhere import runs_elsewhere
@@ -21,11 +20,6 @@ if TYPE_CHECKING:
 
 
 FILM = "animation"  # what blender_render calls a film's frames
-
-
-def new_root(runs: Path) -> Path:
-    """A folder below ``runs`` that is not there yet, named after the time."""
-    return next(path for path in roots(runs) if not path.exists())
 
 
 def list_runs() -> Table:

@@ -96,6 +96,15 @@ def test_without_a_blender_no_run_is_made(alone: None, home: Path, monkeypatch: 
     assert not [*(home / "runs").glob("*")]
 
 
+def test_where_no_folder_can_be_made_that_is_told(alone: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SIMWORLDS_HOME", "/proc/nothing")
+    result = said("demo", "smoke")
+    assert result.exit_code == 2
+    assert (
+        "No folder for a run can be made in /proc/nothing/runs: No such file or directory." in result.stderr
+    )
+
+
 def test_a_limit_that_is_reached_is_exit_code_3(home: Path, tmp_path: Path) -> None:
     root = tmp_path / "run"
     with answered(home, Team()) as api:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 import pytest
 from live_session import no_docs
 
 from agents.blender.blender_sessions import BlenderSession, SessionSetup
-from agents.blender.files.run_folder import RunFolder, new_run
+from agents.blender.files.run_folder import RunFolder, new_root, new_run
 from agents.blender.tools import scene_state
 from agents.blender.tools.base import Call, Knowledge
 from simworlds.folder_lock import locked
@@ -106,6 +107,9 @@ def test_a_session_in_a_folder_that_cannot_be_locked_says_which_and_why(folder: 
 
 
 def test_runs_started_in_one_second_get_their_own_folders(tmp_path: Path) -> None:
+    with ThreadPoolExecutor(8) as threads:
+        begun = list(threads.map(lambda _: new_root(tmp_path / "begun"), range(16)))
+    assert len(set(begun)) == 16
     made = [new_run(tmp_path / "runs").root for _ in range(5)]
     assert len(set(made)) == 5
     assert all((root / "workspace").is_dir() and (root / "checkpoints").is_dir() for root in made)
