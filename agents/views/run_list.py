@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,8 +25,11 @@ FILM = "animation"  # what blender_render calls a film's frames
 
 def list_runs() -> Table:
     """All runs of the runs' folder that have a journal, newest first; of one that cannot be read, just that."""
-    found = sorted(runs_folder().glob(f"*/{NAME}"), key=lambda path: path.stat().st_mtime, reverse=True)
-    return runs_table((path.parent.name, _known_of(path.parent)) for path in found)
+    dated: list[tuple[float, Path]] = []
+    for path in runs_folder().glob(f"*/{NAME}"):
+        with suppress(OSError):  # it has just been removed
+            dated.append((path.stat().st_mtime, path.parent))
+    return runs_table((run.name, _known_of(run)) for _, run in sorted(dated, reverse=True))
 
 
 def list_elsewhere() -> Table:

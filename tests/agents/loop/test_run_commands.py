@@ -250,6 +250,19 @@ def test_runs_in_folders_of_their_users_choice_are_listed_until_these_are_gone(
         assert list((tmp_path / "runs-elsewhere").iterdir()) == []
 
 
+def test_a_run_that_cannot_be_looked_at_hides_no_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SIMWORLDS_HOME", str(tmp_path))
+    kept = tmp_path / "kept"
+    for place in (tmp_path / "runs-elsewhere", kept):
+        place.mkdir()
+    (kept / NAME).touch()
+    (tmp_path / "runs-elsewhere" / "1").write_text(f"/{'x' * 300}")
+    (tmp_path / "runs-elsewhere" / "2").write_text(str(kept))
+    assert runs_elsewhere() == [kept]
+
+
 def test_in_a_pipe_each_run_is_one_line_with_its_whole_path(tmp_path: Path) -> None:
     run = tmp_path / "a folder with a name that is longer than eighty columns are wide" / "and then one more"
     with at_home(tmp_path / "home"), remembered(run):
