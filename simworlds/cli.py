@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from simworlds.errors import NO_ROOM
+from simworlds.errors import NO_ROOM, OF_PATHS
 from simworlds.terminal.streams import discard_output, guard_streams
 
 if TYPE_CHECKING:
@@ -63,7 +63,8 @@ _COMMANDS = {
 class _Lazy(click.Group):
     """A group that loads only the command that is called, and guards what it prints.
 
-    What may end any command is told here: Ctrl-C (what a KeyboardInterrupt says of files is told with it), a full disk.
+    What may end any command is told here: Ctrl-C (what a KeyboardInterrupt says of files is told with it), a full disk,
+    a path that cannot be used.
     """
 
     def main(self, *args: Any, **options: Any) -> Any:
@@ -77,6 +78,9 @@ class _Lazy(click.Group):
                 with suppress(BrokenPipeError):
                     sys.stdout.flush()  # what print has kept until now
         except OSError as error:
+            if error.errno in OF_PATHS and error.filename is not None:
+                click.echo(f"Error: {error.filename} cannot be used: {error.strerror}.", err=True)
+                sys.exit(_FAILED)
             if error.errno not in NO_ROOM:
                 raise
             with suppress(OSError):

@@ -7,6 +7,9 @@ import errno
 # What the system says where there is no room for a file.
 NO_ROOM = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 
+# What it says where the path itself is at fault.
+OF_PATHS = frozenset({errno.EACCES, errno.EPERM, errno.EROFS, errno.ENAMETOOLONG, errno.ELOOP, errno.ENOTDIR})
+
 
 def remedy(error: OSError) -> str:
     """What to do where nothing could be written, as the beginning of a sentence."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Generator
     from pathlib import Path
 
+# The folder may be somebody else's: its lock must not lead to a file elsewhere, nor is anything in one lost.
+_OPENED = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_CLOEXEC", 0)
+
 
 @contextmanager
 def locked(folder: Path, *, before_waiting: Callable[[], None] | None = None) -> Generator[None]:
@@ -20,7 +24,7 @@ def locked(folder: Path, *, before_waiting: Callable[[], None] | None = None) ->
     While another one has it, ``before_waiting`` is called and the folder waited for; without it, Refusal is raised.
     Raises OSError where the folder cannot be written to.
     """
-    with (folder / ".lock").open("w") as file:
+    with os.fdopen(os.open(folder / ".lock", _OPENED, 0o666), "r+b", buffering=0) as file:
         try:
             SYSTEM.lock(file, wait=False)
         except OSError as error:

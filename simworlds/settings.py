@@ -1,4 +1,4 @@
-"""Where things lie on this machine: one folder, moved by SIMWORLDS_HOME, and the user's own sources."""
+"""Where things lie on this machine: one folder, moved by SIMWORLDS_HOME, the user's own sources, and what ~ is."""
 
 from __future__ import annotations
 
@@ -16,10 +16,18 @@ SHADERS_VARIABLE = "SIMWORLDS_SHADERS"
 _BASE = re.compile(r"blender-(\d+)\.(\d+)\.sqlite")
 
 
+def expanded(path: Path) -> Path:
+    """The path with a home folder in place of ``~``; as it is where there is none."""
+    try:
+        return path.expanduser()
+    except RuntimeError:  # a user that there is not, or one without a home
+        return path
+
+
 def home_folder() -> Path:
     """The folder that everything is kept in: what SIMWORLDS_HOME names, else the user's data folder."""
     if named := os.environ.get(HOME_VARIABLE):
-        return Path(named).expanduser().absolute()
+        return expanded(Path(named)).absolute()
     import platformdirs  # noqa: PLC0415 - most callers name their folder
 
     return platformdirs.user_data_path("simworlds", appauthor=False)
@@ -28,7 +36,7 @@ def home_folder() -> Path:
 def corpora_folder() -> Path | None:
     """The folder of documentation sources that SIMWORLDS_CORPORA names, if it does."""
     named = os.environ.get(CORPORA_VARIABLE)
-    return Path(named).expanduser().absolute() if named else None
+    return expanded(Path(named)).absolute() if named else None
 
 
 def ready_base_source() -> str:

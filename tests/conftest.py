@@ -5,7 +5,10 @@ from __future__ import annotations
 import compileall
 import gc
 import os
+import shutil
+import tempfile
 from contextlib import closing, suppress
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -40,6 +43,19 @@ pytest.TempPathFactory.mktemp = _readable_mktemp
 
 # What tests get from a Blender, or from the documentation sources, by asking for a fixture.
 _OF_BLENDER = frozenset({"base", "built_once", "extract", "kb", "reader", "small"})
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Has what processes leave in their temporary folder go with the tests: a Blender that is killed leaves its own.
+
+    The folders that tests get stay, as pytest keeps them.
+    """
+    if "PYTEST_XDIST_WORKER" in os.environ:  # it is in the folder of the process that started it
+        return
+    folder = Path(tempfile.mkdtemp(prefix="simworlds-tests-"))
+    folder.chmod(0o1777)  # as others are: run by root, Blender is another user
+    config.add_cleanup(partial(shutil.rmtree, folder, ignore_errors=True))
+    os.environ["TMPDIR"] = str(folder)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

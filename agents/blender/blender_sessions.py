@@ -221,14 +221,12 @@ class BlenderSession:
                 sandbox=setup.sandbox,
                 read=setup.readable,
             )
-        except OSError as error:
-            why = error.strerror or error
-            raise CannotStart(f"The run folder {setup.run or ''} cannot be made: {why}.") from error
-        try:
+            # Refuses a folder that another session works in, and leaves it as it is.
             blender = Supervisor(launch, folder)
-        except BaseException:
-            launch.clean()
-            raise
+        except OSError as error:
+            root = setup.run or runs_folder()
+            why = f"{error.filename or root}: {error.strerror or error}"
+            raise CannotStart(f"The run folder {root} cannot be used: {why}.") from error
         setup.tell(f"Blender {launch.runtime.version} works in {folder.root}")
         return blender
 

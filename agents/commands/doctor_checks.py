@@ -32,6 +32,7 @@ from simworlds.sandbox.errors import BlenderError, CannotStart, NotInstalled
 from simworlds.sandbox.launch import find_blender
 from simworlds.sandbox.replies import mapping
 from simworlds.sandbox.shader_cache import are_kept
+from simworlds.settings import expanded
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
@@ -263,7 +264,7 @@ def _grouped(blender: Supervisor) -> set[Wall]:
 
 def _outside() -> Path | None:
     """The user's home folder, if a file can be made there."""
-    home = Path.home()
+    home = expanded(Path("~"))
     return home if os.access(home, os.W_OK) else None
 
 

@@ -6,7 +6,7 @@ import os
 import signal
 import sys
 import threading
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -160,15 +160,15 @@ def demo(name: str | None, **given: Any) -> None:
     if name is None:
         click.echo(listed())
         return
-    root = _root(given)
-    try:
-        asked = demo_options(name, root.with_name(f"{root.name}-input.blend"))
-    except NoRun as error:
-        raise click.UsageError(str(error)) from error
-    except RunError as error:
-        click.echo(f"Error: {error}", err=True)
-        sys.exit(EXITS["failed"])
-    _begin(asked, given | {"root": root})
+    with _folder_of(given) as root:
+        try:
+            asked = demo_options(name, root.with_name(f"{root.name}-input.blend"))
+        except NoRun as error:
+            raise click.UsageError(str(error)) from error
+        except RunError as error:
+            click.echo(f"Error: {error}", err=True)
+            sys.exit(EXITS["failed"])
+        _begin(asked, given | {"root": root})
 
 
 @click.command()
@@ -279,11 +279,29 @@ def _limited(given: dict[str, Any], *, render: bool) -> Any:
     return RunLimits(**{name: given[name] for name in names})
 
 
-def _root(given: dict[str, Any]) -> Path:
-    from agents.blender.launch import runs_folder  # noqa: PLC0415 - not for --help
-    from agents.views.run_list import new_root  # noqa: PLC0415
+@contextmanager
+def _folder_of(given: dict[str, Any]) -> Generator[Path]:
+    """The folder that was chosen for a run, else a new one, which goes again if nothing has come into it."""
+    if given["root"] is not None:
+        yield given["root"]
+        return
+    from agents.blender.files.run_folder import new_root  # noqa: PLC0415 - not for --help
+    from agents.blender.launch import runs_folder  # noqa: PLC0415
 
-    return given["root"] or new_root(runs_folder())
+    try:
+        root = new_root(runs_folder())
+    except OSError as error:
+        click.echo(
+            f"Error: No folder for a run can be made in {runs_folder()}: {error.strerror or error}. Choose one with "
+            "--run, or set SIMWORLDS_HOME.",
+            err=True,
+        )
+        sys.exit(EXITS["failed"])
+    try:
+        yield root
+    finally:
+        with suppress(OSError):
+            root.rmdir()
 
 
 def _begin(asked: dict[str, Any], given: dict[str, Any]) -> None:
@@ -303,9 +321,9 @@ def _begin(asked: dict[str, Any], given: dict[str, Any]) -> None:
     from agents.commands.sandbox_warning import warn  # noqa: PLC0415 - not for --help
     from simworlds.sandbox.confinement.confined_command import best_sandbox  # noqa: PLC0415
 
-    root = _root(given)
     warn(best_sandbox(options.sandbox))
-    _work(lambda session: begin(root, options, session), root, given)
+    with _folder_of(given) as root:
+        _work(lambda session: begin(root, options, session), root, given)
 
 
 def _work(

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
+from simworlds.settings import expanded
 from simworlds.terminal import options
 
 if TYPE_CHECKING:
@@ -285,7 +286,7 @@ def _opened(scene: Path, choices: dict[str, Any], call: Call) -> Generator[Super
     from agents.blender.launch import make_launch  # noqa: PLC0415 - not for --help
     from agents.blender.supervisor import Supervisor  # noqa: PLC0415
 
-    real = scene.expanduser().resolve()
+    real = expanded(scene).resolve()
     with tempfile.TemporaryDirectory(prefix="simworlds-verify-", ignore_cleanup_errors=True) as temporary:
         folder = RunFolder.make(Path(temporary).resolve() / "run")
         if not real.exists():

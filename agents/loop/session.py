@@ -38,7 +38,7 @@ from simworlds.llm.spending import Spending
 from simworlds.operating_system import SYSTEM
 from simworlds.own_command import own_command
 from simworlds.sandbox.confinement.confined_command import best_sandbox
-from simworlds.sandbox.errors import Refusal
+from simworlds.sandbox.errors import CannotStart, Refusal
 from simworlds.sandbox.launch import find_blender
 
 if TYPE_CHECKING:
@@ -118,20 +118,38 @@ def begin(root: Path, options: Options, session: RunSession) -> Ended:
     """Begins a run in ``root``, a folder that is new or empty. Raises NoRun; Unusable, then there is no folder."""
     check_inputs(options)
     try:
-        if root.exists() and any(root.iterdir()):
-            goes_on = (
-                f", or continue the run in it: {resume_command(root)}" if (root / NAME).is_file() else "."
-            )
-            raise NoRun(f"{root} is not empty. Choose another folder{goes_on}")
-        check_model(options, session.limits.max_cost)
-        root.mkdir(parents=True, exist_ok=True)
+        is_free = not root.exists() or not any(root.iterdir())
+    except OSError as error:
+        raise _unusable(root, error) from error
+    if not is_free:
+        goes_on = f", or continue the run in it: {resume_command(root)}" if (root / NAME).is_file() else "."
+        raise NoRun(f"{root} is not empty. Choose another folder{goes_on}")
+    return _work(root, session, _beginning(options, session.limits))
+
+
+def _unusable(root: Path, error: OSError) -> NoRun:
+    return NoRun(f"{root} cannot be used as the folder of a run: {error.strerror or error}.")
+
+
+def _beginning(options: Options, limits: RunLimits) -> RunBegan:
+    """What a run is, to be journalled first. Raises NoRun; Unusable where no model or no Blender can be used."""
+    try:
+        check_model(options, limits.max_cost)
+        return RunBegan(
+            version=own_version(),
+            mode=options.mode,
+            prompt=options.prompt,
+            source=options.source_text,
+            models=_models(options),
+            blender=find_blender(options.blender, options.blender_exe).version,
+            options=options.model_dump(mode="json"),
+        )
     except OverBudget as error:
         raise Unusable(f"{error} The options: --price IN/OUT, --max-cost USD.") from error
     except ModelError as error:
         raise Unusable(f"{error} What needs no key: simworlds demo.") from error
-    except OSError as error:
-        raise NoRun(f"{root} cannot be used as the folder of a run: {error.strerror or error}.") from error
-    return _work(root, options, session)
+    except CannotStart as error:
+        raise Unusable(str(error)) from error
 
 
 def resume_command(root: Path) -> str:
@@ -147,7 +165,7 @@ def resume(root: Path, session: RunSession) -> Ended:
     if ending and ending.outcome == "done":
         told = f"The run was finished already.{_too_late(session.limits)}"
         return Ended("done", told, root / (ending.file or ""), root / (ending.video or ""))
-    return _work(root, None, session)
+    return _work(root, session)
 
 
 def _too_late(limits: RunLimits) -> str:
@@ -159,20 +177,24 @@ def _too_late(limits: RunLimits) -> str:
     return f" {' and '.join(named)} change{'s' * (len(named) == 1)} nothing of it: what is rendered stays."
 
 
-def _work(root: Path, options: Options | None, session: RunSession) -> Ended:
+def _work(root: Path, session: RunSession, began: RunBegan | None = None) -> Ended:
+    """Works on the run in ``root``; ``began`` says what a new one is. Raises NoRun, RunError."""
     root = root.resolve()
     with ExitStack() as stack:
         try:
+            root.mkdir(parents=True, exist_ok=True)
             stack.enter_context(locked(root))
         except Refusal as refusal:
             raise NoRun(str(refusal)) from refusal
         except OSError as error:
-            raise NoRun(f"{root} cannot be written: {error.strerror or error}.") from error
+            raise _unusable(root, error) from error
         journal = Journal(root / NAME)
         stack.callback(journal.close)
         journal.listen(session.watcher.take)
-        asked = options or _options(journal)
-        ended = _with_results(root, _ended(lambda: _run(root, asked, journal, session)))
+        if began is not None:
+            journal.note(began)
+        options = _options(journal)
+        ended = _with_results(root, _ended(lambda: _run(root, options, journal, session)))
         file, video = _within(root, ended.file), _within(root, ended.shown)
         journal.append(RunEnded(outcome=ended.how, why=ended.why, file=file, video=video))
         return ended
@@ -206,7 +228,15 @@ def _with_results(root: Path, ended: Ended) -> Ended:
 
 def _run(root: Path, options: Options, journal: Journal, session: RunSession) -> Ended:
     stop, limits = session.stop, session.limits
-    _note_beginning(options, limits, journal)
+    journal.append(
+        SessionBegan(
+            pid=os.getpid(),
+            render_minutes=limits.render_minutes,
+            render_samples=limits.samples,
+            max_minutes=limits.max_minutes,
+            max_cost=limits.max_cost,
+        )
+    )
     repeat_told(options, journal)
     files = RunFiles(root)
     files.checkpoints.mkdir(exist_ok=True)
@@ -239,30 +269,6 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
         finally:
             stop.tools = None
     return Ended("done", "", files.scene, rendering.path)
-
-
-def _note_beginning(options: Options, limits: RunLimits, journal: Journal) -> None:
-    """Journals what the run is, if that is not known, and that a session begins. Raises CannotStart."""
-    journal.note(
-        RunBegan(
-            version=own_version(),
-            mode=options.mode,
-            prompt=options.prompt,
-            source=options.source_text,
-            models=_models(options),
-            blender=find_blender(options.blender, options.blender_exe).version,
-            options=options.model_dump(mode="json"),
-        )
-    )
-    journal.append(
-        SessionBegan(
-            pid=os.getpid(),
-            render_minutes=limits.render_minutes,
-            render_samples=limits.samples,
-            max_minutes=limits.max_minutes,
-            max_cost=limits.max_cost,
-        )
-    )
 
 
 def _setup(options: Options, files: RunFiles) -> SessionSetup:

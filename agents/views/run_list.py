@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from agents.blender.files.run_folder import roots
 from agents.blender.launch import runs_folder
 from agents.loop.errors import NoRun
 from agents.loop.record.elsewhere import runs_elsewhere
@@ -23,15 +23,13 @@ if TYPE_CHECKING:
 FILM = "animation"  # what blender_render calls a film's frames
 
 
-def new_root(runs: Path) -> Path:
-    """A folder below ``runs`` that is not there yet, named after the time."""
-    return next(path for path in roots(runs) if not path.exists())
-
-
 def list_runs() -> Table:
     """All runs of the runs' folder that have a journal, newest first; of one that cannot be read, just that."""
-    found = sorted(runs_folder().glob(f"*/{NAME}"), key=lambda path: path.stat().st_mtime, reverse=True)
-    return runs_table((path.parent.name, _known_of(path.parent)) for path in found)
+    dated: list[tuple[float, Path]] = []
+    for path in runs_folder().glob(f"*/{NAME}"):
+        with suppress(OSError):  # it has just been removed
+            dated.append((path.stat().st_mtime, path.parent))
+    return runs_table((run.name, _known_of(run)) for _, run in sorted(dated, reverse=True))
 
 
 def list_elsewhere() -> Table:

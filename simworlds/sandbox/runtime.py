@@ -30,6 +30,7 @@ from simworlds.releases import (
 )
 from simworlds.sandbox.errors import NotInstalled, ProgramFailed, RuntimeMissing
 from simworlds.sandbox.program import BOOT, Program
+from simworlds.settings import expanded
 from simworlds.terminal.text import shortened
 
 Kind = Literal["executable", "environment", "managed"]
@@ -79,7 +80,7 @@ def find_runtime(
     environments. Raises RuntimeMissing, which says what was tried; NotInstalled without leave to ``install``.
     """
     if blender_exe is not None:
-        return _named_executable(blender_exe.expanduser(), version)
+        return _named_executable(expanded(blender_exe), version)
     installed = installed_bpy()
     wanted = version or installed or USUAL
     if installed is not None and same_version(wanted, installed):
@@ -283,7 +284,7 @@ def _install_environment(python: str) -> dict[str, str]:
     """
     dropped = {"VIRTUAL_ENV", "CONDA_PREFIX", "PYTHONPATH", "PYTHONHOME", "ANTHROPIC_API_KEY"}
     environment = {name: value for name, value in os.environ.items() if name not in dropped}
-    pyenv = Path(environment.get("PYENV_ROOT") or Path.home() / ".pyenv")
+    pyenv = expanded(Path(environment.get("PYENV_ROOT") or "~/.pyenv"))
     versions = sorted(str(folder / "bin") for folder in (pyenv / "versions").glob(f"{python}.*"))
     if _SYSTEM_CERTIFICATES.is_file():
         environment.setdefault("UV_SYSTEM_CERTS", "1")

@@ -10,6 +10,7 @@ import click
 
 from simworlds.errors import UserError
 from simworlds.releases import minor_of
+from simworlds.settings import expanded
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -49,7 +50,7 @@ class _Program(click.Path):
         """The path, also of a program that is found by its name, and of one in the environment that begins with
         ``~``.
         """
-        path = Path(shutil.which(value) or value).expanduser().absolute()
+        path = expanded(Path(shutil.which(value) or value)).absolute()
         if not path.exists():
             self.fail(
                 f"There is no Blender at {path}. Give the path of the program, or of its folder.", param, ctx

@@ -9,6 +9,8 @@ from typing import Any
 
 import click
 
+from simworlds.settings import expanded
+
 
 class OutputFile(click.Path):
     """The path of a file in a folder that is there, as a slip of the pen shall make no folders, and that takes files,
@@ -21,7 +23,7 @@ class OutputFile(click.Path):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """See click."""
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
-        folder = path.expanduser().absolute().parent
+        folder = expanded(path).absolute().parent
         if not folder.is_dir():
             self.fail(f"There is no folder {folder}. Make it first, or name another file.", param, ctx)
         try:

@@ -1,8 +1,9 @@
-"""What holds for every command: completion in a shell, Ctrl-C, a full disk, and names that are mistyped."""
+"""What holds for every command: completion in a shell, Ctrl-C, a full disk, unusable paths, and mistyped names."""
 
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -21,6 +22,7 @@ command = click.Command("does", callback=lambda: exec({code!r}))
 main.get_command = lambda ctx, name: command
 main(["does"], prog_name="simworlds")
 """
+LONG = "x" * 300
 needs_full_device = pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full")  # noqa: PTH110
 
 
@@ -97,6 +99,34 @@ def test_a_full_disk_is_an_error(code: str, tmp_path: Path) -> None:
         2,
         "Error: The output cannot be written: No space left on device.\n",
     )
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["verify", f"{LONG}.blend"],
+        ["show", LONG],
+        ["mcp", "--run", LONG],
+        ["extension", "install", "--blender-exe", LONG],
+    ],
+)
+def test_a_path_that_cannot_be_used_is_an_error(words: list[str], tmp_path: Path) -> None:
+    done = run_here(words, environment(tmp_path), tmp_path)
+    assert done.returncode == 2
+    assert re.fullmatch(rf"Error: \S*{LONG}\S* cannot be used: File name too long\.\n", done.stderr.decode())
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["verify", "~nobody-of-this-name/a.blend"], "There is no file ~nobody-of-this-name/a.blend."),
+        (["verify", "a.blend", "--blender-exe", "~nobody-of-this-name/b"], "There is no Blender at "),
+        (["runs"], "There are no runs in "),
+    ],
+)
+def test_a_home_of_nobody_is_a_path_like_others(words: list[str], says: str, tmp_path: Path) -> None:
+    done = run_here(words, {**environment(tmp_path), "SIMWORLDS_HOME": "~nobody-of-this-name"}, tmp_path)
+    assert says in (done.stdout + done.stderr).decode()
 
 
 def test_a_closed_output_changes_nothing_else(tmp_path: Path) -> None:

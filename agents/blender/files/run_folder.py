@@ -100,18 +100,19 @@ class RunFolder:
         return path
 
 
-def roots(runs: Path) -> Iterator[Path]:
-    """Paths below ``runs`` for a new run, named after the time; each may already exist."""
+def new_root(runs: Path) -> Path:
+    """Makes a folder below ``runs`` for a new run, named after the time. Raises Refusal, OSError."""
     stamp = datetime.now().astimezone().strftime("%Y-%m-%d-%H%M%S")
-    return (runs / (stamp if number == 1 else f"{stamp}-{number}") for number in range(1, 1000))
-
-
-def new_run(runs: Path) -> RunFolder:
-    """A new folder below ``runs``, named after the time. Raises Refusal."""
-    for root in roots(runs):
+    for number in range(1, 1000):
+        root = runs / (stamp if number == 1 else f"{stamp}-{number}")
         try:
             root.mkdir(parents=True)
         except FileExistsError:
             continue
-        return RunFolder.make(root)
+        return root
     raise Refusal(f"No folder could be made in {runs}: 999 runs were started in one second.")
+
+
+def new_run(runs: Path) -> RunFolder:
+    """A new folder below ``runs``, named after the time. Raises Refusal, OSError."""
+    return RunFolder.make(new_root(runs))

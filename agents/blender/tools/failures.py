@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 
+from simworlds.errors import NO_ROOM, OF_PATHS, remedy
 from simworlds.sandbox.errors import BlenderError, Lost, ToolBroke
 
 _LOG = logging.getLogger(__name__)
@@ -20,4 +21,8 @@ def describe_failure(name: str, error: Exception) -> str:
     if isinstance(error, BlenderError):
         return str(error)
     _LOG.error("%s failed", name, exc_info=error)
+    if isinstance(error, OSError) and error.errno in NO_ROOM | OF_PATHS:
+        # No other call, and no other scene, would fare better.
+        place = f"{error.filename}: " if error.filename is not None else ""
+        return f"{name} failed: {place}{error.strerror}. {remedy(error)}, then call it again."
     return f"{name} failed on this call ({type(error).__name__}). Change the call, or report it with its arguments."

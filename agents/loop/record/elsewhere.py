@@ -39,19 +39,16 @@ def remembered(root: Path) -> Generator[None]:
 
 def runs_elsewhere() -> list[Path]:
     """The runs outside the runs' folder, those worked on last first. Forgets those whose folder is gone."""
-    roots: list[Path] = []
+    dated: list[tuple[float, Path]] = []
     for entry in _entries():
-        try:
+        with suppress(OSError):  # not to be looked at now, as another user's, or without a journal yet
             with entry.open("rb") as file:
                 root = Path(os.fsdecode(file.read(_LONGEST)))
-        except OSError:
-            continue
-        if root.is_dir():
-            roots.append(root)
-        else:
-            _forget(entry)
-    there = [root for root in roots if (root / NAME).is_file()]
-    return sorted(there, key=lambda root: (root / NAME).stat().st_mtime, reverse=True)
+            if root.is_dir():
+                dated.append(((root / NAME).stat().st_mtime, root))
+            else:
+                _forget(entry)
+    return [root for _, root in sorted(dated, reverse=True)]
 
 
 def _remember(root: Path) -> None:

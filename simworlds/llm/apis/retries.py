@@ -73,10 +73,10 @@ def requested_pause(headers: Mapping[str, str]) -> float:
             continue
         return seconds if 0 <= seconds < float("inf") else 0.0
     try:
-        until = email.utils.parsedate_to_datetime(headers.get("retry-after", ""))
-    except ValueError:
+        until = email.utils.parsedate_to_datetime(headers.get("retry-after", "")).timestamp()
+    except (ValueError, OverflowError):  # the latter where the last year is no time of this zone
         return 0.0
-    return max(0.0, until.timestamp() - time.time())
+    return max(0.0, until - time.time())
 
 
 def one_line(words: str) -> str:

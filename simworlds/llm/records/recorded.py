@@ -1,6 +1,6 @@
 """Records requests to a model and its answers, and plays them back without a key or a network.
 
-A record is made of rows (JSON objects, one a line in a file). Before a call::
+A record is made of rows (JSON objects). Before a call::
 
     {"type": "model.asked", "n": 7, "role": "coder", "stage": "motion", "model": "claude-opus-5-5",
      "digest": "…", "parts": ["…", …], "texts": {"…": "…"}}
@@ -18,7 +18,6 @@ the order of the record. When nothing fits, the conversation has drifted; that e
 from __future__ import annotations
 
 import difflib
-import json
 import threading
 from collections import defaultdict
 from dataclasses import asdict, dataclass, replace
@@ -118,7 +117,7 @@ class Recorded:
         then: Model | None = None,
         skip: Mapping[tuple[str, str], int] | None = None,
     ) -> None:
-        """``record``: a hand-written folder, a file of rows, or rows.
+        """``record``: a hand-written folder, or rows.
 
         ``then`` is asked when the record has no turn left for the role and stage. ``skip``: so many turns of a role
         and stage were played before. Raises UnreadableRecord.
@@ -127,7 +126,7 @@ class Recorded:
         self._then = then
         self._lanes: defaultdict[tuple[str, str], list[RecordedTurn | WrittenTurn]] = defaultdict(list)
         self._lock = threading.Lock()
-        turns = read_folder(record) if isinstance(record, Path) and record.is_dir() else read_turns(record)
+        turns = read_folder(record) if isinstance(record, Path) else read_turns(record)
         for turn in turns:
             self._lanes[turn.role, turn.stage].append(turn)
         for lane, count in (skip or {}).items():
@@ -240,13 +239,12 @@ class _Answered(BaseModel):
     turn: Turn
 
 
-def read_turns(record: Path | Iterable[Mapping[str, Any]]) -> list[RecordedTurn]:
+def read_turns(rows: Iterable[Mapping[str, Any]]) -> list[RecordedTurn]:
     """The turns of a journal, in the order in which they were answered. Raises UnreadableRecord."""
-    name = str(record) if isinstance(record, Path) else "the record"
     texts: dict[str, str] = {}
     asked: dict[int, _Asked] = {}
     turns: list[RecordedTurn] = []
-    for number, row in enumerate(_rows(record) if isinstance(record, Path) else record, 1):
+    for number, row in enumerate(rows, 1):
         try:
             if row.get("type") == "model.asked":
                 ask = _Asked.model_validate(row)
@@ -268,24 +266,5 @@ def read_turns(record: Path | Iterable[Mapping[str, Any]]) -> list[RecordedTurn]
                 )
         except (ValidationError, KeyError) as error:
             why = "an answer to no question" if isinstance(error, KeyError) else str(error)
-            raise UnreadableRecord(f"{name}, row {number}, is not part of a record: {why}") from error
+            raise UnreadableRecord(f"Row {number} is not part of a record: {why}") from error
     return turns
-
-
-def _rows(path: Path) -> list[Mapping[str, Any]]:
-    """The rows in a file. The last may be torn, where its writer was killed. Raises UnreadableRecord."""
-    try:
-        lines = path.read_bytes().rstrip().split(b"\n")
-    except OSError as error:
-        raise UnreadableRecord(f"{path} cannot be read: {error}") from error
-    rows: list[Mapping[str, Any]] = []
-    for number, line in enumerate(lines, 1):
-        try:
-            row = json.loads(line)
-        except (ValueError, RecursionError):
-            row = None
-        if isinstance(row, dict):
-            rows.append(row)
-        elif number < len(lines):
-            raise UnreadableRecord(f"{path}, line {number}, is not a journal record: {line[:80]!r}")
-    return rows

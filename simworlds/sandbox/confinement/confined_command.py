@@ -27,6 +27,7 @@ from simworlds.sandbox.confinement.system_calls import OWN_PROCESS, first_filter
 from simworlds.sandbox.confinement.walls import EVERY_WALL, WALLS, WITHOUT
 from simworlds.sandbox.confinement.worker_user import check_readable, hand_over, worker_id
 from simworlds.sandbox.errors import CannotStart
+from simworlds.settings import expanded
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -154,7 +155,7 @@ class Sandbox:
 
 
 def _check_home(paths: list[str]) -> None:
-    home = Path.home().resolve()
+    home = expanded(Path("~")).resolve()
     for path in paths:
         if home.is_relative_to(path) and str(home) != "/":
             raise CannotStart(

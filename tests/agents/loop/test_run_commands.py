@@ -87,6 +87,24 @@ def test_without_a_key_make_fails_with_exit_code_2_and_says_what_to_do(alone: No
     assert not (tmp_path / "run").exists()
 
 
+def test_without_a_blender_no_run_is_made(alone: None, home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ANTHROPIC_API_KEY", "any")
+    result = said("make", "A crate", "--blender-exe", "/bin/true")
+    assert result.exit_code == 2
+    assert "No Blender was found: /bin/true is not Blender" in result.stderr
+    assert "resume" not in result.output
+    assert not [*(home / "runs").glob("*")]
+
+
+def test_where_no_folder_can_be_made_that_is_told(alone: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SIMWORLDS_HOME", "/proc/nothing")
+    result = said("demo", "smoke")
+    assert result.exit_code == 2
+    assert (
+        "No folder for a run can be made in /proc/nothing/runs: No such file or directory." in result.stderr
+    )
+
+
 def test_a_limit_that_is_reached_is_exit_code_3(home: Path, tmp_path: Path) -> None:
     root = tmp_path / "run"
     with answered(home, Team()) as api:
@@ -115,7 +133,7 @@ def test_a_limit_that_is_reached_is_exit_code_3(home: Path, tmp_path: Path) -> N
         (("make", "A crate", "--run", "/proc/nothing"), "cannot be used as the folder of a run"),
         (
             ("demo", "edit", "--run", "/proc/nothing"),
-            "folder /proc/nothing-input cannot be made: No such file",
+            "folder /proc/nothing-input cannot be used: /proc/nothing-input: No such file",
         ),
     ],
 )
@@ -230,6 +248,19 @@ def test_runs_in_folders_of_their_users_choice_are_listed_until_these_are_gone(
         shutil.rmtree(run)
         assert str(run) not in said("runs").stdout
         assert list((tmp_path / "runs-elsewhere").iterdir()) == []
+
+
+def test_a_run_that_cannot_be_looked_at_hides_no_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SIMWORLDS_HOME", str(tmp_path))
+    kept = tmp_path / "kept"
+    for place in (tmp_path / "runs-elsewhere", kept):
+        place.mkdir()
+    (kept / NAME).touch()
+    (tmp_path / "runs-elsewhere" / "1").write_text(f"/{'x' * 300}")
+    (tmp_path / "runs-elsewhere" / "2").write_text(str(kept))
+    assert runs_elsewhere() == [kept]
 
 
 def test_in_a_pipe_each_run_is_one_line_with_its_whole_path(tmp_path: Path) -> None:

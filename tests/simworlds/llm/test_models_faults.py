@@ -32,7 +32,7 @@ from places import REPO
 
 from simworlds.llm.apis.attempts import Settings
 from simworlds.llm.apis.claude import Claude
-from simworlds.llm.apis.retries import RetryPolicy
+from simworlds.llm.apis.retries import RetryPolicy, requested_pause
 from simworlds.llm.errors import ModelError, OverBudget, Rejected, Unreachable
 from simworlds.llm.messages import Kept, Text, ToolUse, Usage
 from simworlds.llm.spending import Metered, Spending
@@ -299,6 +299,14 @@ def test_retry_after_dates_are_respected(api, claude, told, wait, least, most):
     api.fail(MESSAGES, Status(429, {"retry-after": format_datetime(datetime.now(UTC) + wait)}))
     claude.answer(ask())
     assert least <= told.pauses[0] <= most
+
+
+def test_a_date_beyond_the_last_year_asks_for_no_pause(monkeypatch):
+    with monkeypatch.context() as patch:
+        patch.setenv("TZ", "UTC-9")  # nine hours before, and without a zone the date is taken for one of here
+        time.tzset()
+        assert requested_pause({"retry-after": "Fri, 31 Dec 9999 23:59:59 -0000"}) == 0
+    time.tzset()
 
 
 def test_too_long_a_retry_after_is_given_up(api, claude, told):

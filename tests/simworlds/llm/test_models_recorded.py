@@ -18,8 +18,6 @@ from simworlds.llm.records.canonical import alike, form_of, normal
 from simworlds.llm.records.recorded import Recorded, Recording
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from simworlds.llm.messages import Ask
 
 
@@ -42,14 +40,13 @@ FIRST = ask("Build a table.")
 SECOND = ask("Build a table.", USED, user(ToolResult("toolu_1", (Text("Done in 0.31 s."), Picture(png())))))
 
 
-def test_recorded_answers_play_back_exactly(api, claude, tmp_path: Path):
+def test_recorded_answers_play_back_exactly(api, claude):
     thought = {"type": "thinking", "thinking": "Hm.", "signature": "signed"}
     call = {"type": "tool_use", "id": "t1", "name": "blender_execute", "input": {"code": "print('ä')"}}
     api.answer = lambda params: Reply(content=(thought, call), stop_reason="tool_use")
-    path = tmp_path / "journal.jsonl"
-    with path.open("a", encoding="utf-8") as file:
-        live = Recording(claude, lambda row: print(json.dumps(row), file=file, flush=True)).answer(FIRST)
-    played = Recorded(path)
+    lines: list[str] = []
+    live = Recording(claude, lambda row: lines.append(json.dumps(row))).answer(FIRST)
+    played = Recorded(map(json.loads, lines))
     heard: list[str] = []
     turn = played.answer(FIRST, heard.append)
     assert turn == replace(live, live=False)
@@ -270,32 +267,17 @@ def test_several_may_play_at_once():
     assert [turn.text for turn in turns] == [f"to s{number}" for number in range(20)]
 
 
-def test_a_torn_last_line_is_ignored(tmp_path: Path):
-    rows = record((FIRST, says("a")), (SECOND, says("b")))
-    path = tmp_path / "journal.jsonl"
-    lines = [json.dumps({"type": "stage.closed", "stage": "uv"}), *map(json.dumps, rows)]
-    path.write_text("\n".join(lines)[:-40])
-    played = Recorded(path)
-    assert played.answer(FIRST).text == "a"
-    assert played.left() == ()
-
-
 @pytest.mark.parametrize(
     ("lines", "says_what"),
     [
-        (["{}", "{torn", "{}"], "line 2"),
-        (["{}", '{"type": "model.asked", "n": 1}'], "row 2.*role"),
+        (["{}", '{"type": "model.asked", "n": 1}'], "Row 2.*role"),
         (['{"type": "model.answered", "n": 3, "turn": {"content": [], "stop_reason": "x"}}'], "no question"),
-        (['{"type": "model.answered", "n": 3, "turn": {"content": [{"type": "song"}]}}'], "row 1"),
+        (['{"type": "model.answered", "n": 3, "turn": {"content": [{"type": "song"}]}}'], "Row 1"),
     ],
 )
-def test_an_invalid_record_is_an_error(tmp_path: Path, lines, says_what):
-    path = tmp_path / "journal.jsonl"
-    path.write_text("\n".join(lines))
+def test_an_invalid_record_is_an_error(lines, says_what):
     with pytest.raises(UnreadableRecord, match=f"(?s){says_what}"):
-        Recorded(path)
-    with pytest.raises(UnreadableRecord, match="cannot be read"):
-        Recorded(tmp_path / "nothing.jsonl")
+        Recorded(map(json.loads, lines))
 
 
 @pytest.mark.parametrize(

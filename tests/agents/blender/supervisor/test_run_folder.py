@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import asyncio
+from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 import pytest
+from live_session import no_docs
 
-from agents.blender.files.run_folder import RunFolder, new_run
+from agents.blender.blender_sessions import BlenderSession, SessionSetup
+from agents.blender.files.run_folder import RunFolder, new_root, new_run
+from agents.blender.tools import scene_state
+from agents.blender.tools.base import Call, Knowledge
 from simworlds.folder_lock import locked
-from simworlds.sandbox.errors import Refusal
+from simworlds.sandbox.confinement.confined_command import best_sandbox
+from simworlds.sandbox.errors import CannotStart, Refusal
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -83,7 +90,26 @@ def test_refuses_a_second_lock_of_a_run(folder: RunFolder) -> None:
         pass
 
 
+def test_a_lock_that_is_a_link_is_not_followed(folder: RunFolder, outside: Path) -> None:
+    (folder.root / ".lock").symlink_to(outside)
+    with pytest.raises(OSError, match="symbolic links"), locked(folder.root):
+        pass
+    assert outside.read_text() == "secret"
+
+
+def test_a_session_in_a_folder_that_cannot_be_locked_says_which_and_why(folder: RunFolder) -> None:
+    (folder.root / ".lock").mkdir()
+    session = BlenderSession(SessionSetup(best_sandbox("none"), run=folder.root))
+    use = session.use(scene_state.TOOL, {}, Call(), lambda _version: Knowledge(no_docs))
+    with pytest.raises(CannotStart, match=r"cannot be used: \S+\.lock: Is a directory\."):
+        asyncio.run(use)
+    session.close()
+
+
 def test_runs_started_in_one_second_get_their_own_folders(tmp_path: Path) -> None:
+    with ThreadPoolExecutor(8) as threads:
+        begun = list(threads.map(lambda _: new_root(tmp_path / "begun"), range(16)))
+    assert len(set(begun)) == 16
     made = [new_run(tmp_path / "runs").root for _ in range(5)]
     assert len(set(made)) == 5
     assert all((root / "workspace").is_dir() and (root / "checkpoints").is_dir() for root in made)

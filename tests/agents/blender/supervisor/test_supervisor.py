@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import os
 import re
@@ -13,21 +14,23 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from live_session import LiveSession
+from live_session import LiveSession, no_docs
 from places import REPO
 from processes import becomes, has_ended, of_run
 from sandboxes import skip_unless_it_works
 from whole import IS_WHOLE
 
+from agents.blender.blender_sessions import BlenderSession, SessionSetup
 from agents.blender.files.run_folder import RunFolder
 from agents.blender.launch import make_launch
 from agents.blender.supervisor import Supervisor
-from agents.blender.tools.base import Call
+from agents.blender.tools.base import Call, Knowledge
 from agents.blender.tools.execute import TOOL
 from agents.blender.tools.motion_sheet import TOOL as MOTION_SHEET
 from agents.blender.tools.previews import SCENE_LAYOUT
 from simworlds.sandbox.errors import CannotStart, Died, Interrupted, LeftBehind, Lost, Refusal, TookTooLong
 from simworlds.sandbox.hostile_ground import HostileGround
+from simworlds.sandbox.launch import HALF_WRITTEN, PRIVATE
 from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
@@ -396,6 +399,23 @@ def test_refuses_a_second_supervisor_for_a_run(hardy: LiveSession) -> None:
     folder = hardy.blender.folder
     with pytest.raises(Refusal, match="in use by another"):
         Supervisor(make_launch(folder.workspace), folder)
+
+
+def test_a_session_that_is_refused_a_run_takes_nothing_from_the_one_that_has_it(hardy: LiveSession) -> None:
+    folder = hardy.blender.folder
+    (folder.root / PRIVATE / "temporary").touch()
+    half = folder.root / "workspace" / f"tower{HALF_WRITTEN}"
+    half.touch()
+    other = BlenderSession(SessionSetup(hardy.blender.launch.sandbox, run=folder.root))
+    with pytest.raises(Refusal, match="in use by another"):
+        asyncio.run(other.use(TOOL, {"code": "1"}, Call(), lambda _version: Knowledge(no_docs)))
+    other.close()
+    assert (folder.root / PRIVATE / "temporary").exists()
+    assert half.exists()
+    half.unlink()
+    hardy.run("bpy.context.scene['goes on'] = True")
+    assert hardy.blender.take_note() == ""
+    assert hardy.blender.checkpoints.unkept == 0
 
 
 def test_rejects_a_wrong_executable_before_starting_it(tmp_path: Path) -> None:
