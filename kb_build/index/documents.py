@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.passages import Passage, find_passages
 from kb_build.pages.definitions import passage_text
-from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.api_names import REMOVING_VERBS, TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 FIELDS = ("name", "heading", "context", "body", "related", "expansions")
 # How to write the manual, single add-ons, features kept for old files, the colours of Blender's own windows.
 _RARELY_ASKED = re.compile(r"contribute/|addons/|freestyle\.|legacy|bpy\.types\.(?:Theme|\w*ViewerPath)")
-_REMOVING = frozenset({"remove", "clear", "delete", "free", "unlink", "discard", "unassign"})
 _OF_NODES = re.compile(
     r".*/(?:geometry|shader)_nodes/|compositing/types/|bpy\.types\.\w*Node|bpy\.ops\.node\."
 )
@@ -224,7 +223,9 @@ def kind_of(document: Document) -> DocumentKind:
         return "index"
     if _RARELY_ASKED.search(document.ref):
         return "rarely asked"
-    if document.kind == "function" and not _REMOVING.isdisjoint(document.ref.rpartition(".")[2].split("_")):
+    if document.kind == "function" and not REMOVING_VERBS.isdisjoint(
+        document.ref.rpartition(".")[2].split("_")
+    ):
         return "removing"
     if _OF_NODES.match(document.ref):
         return "node"

@@ -19,6 +19,9 @@ BLEND_DATA = f"{TYPES}BlendData"
 # What lets a Blender without a window draw, since 5.2.
 BEGIN_DRAWING = "gpu.init"
 
+# The verbs by which functions and operators are called that take something away.
+REMOVING_VERBS = frozenset({"clear", "delete", "discard", "free", "remove", "unassign", "unlink"})
+
 # Where a node has its sockets.
 SIDES = ("inputs", "outputs")
 
