@@ -56,10 +56,8 @@ class Script:
 
     analysis: Analysis
     symbols: Symbols
-    functions: Mapping[str, ast.FunctionDef] = field(default_factory=dict[str, ast.FunctionDef])
-    methods: Mapping[str, Mapping[str, ast.FunctionDef]] = field(
-        default_factory=dict[str, "Mapping[str, ast.FunctionDef]"]
-    )
+    functions: Mapping[str, ast.FunctionDef]
+    methods: Mapping[str, Mapping[str, ast.FunctionDef]]
     fresh: int = 0
 
     def unknown(self) -> Answer:
