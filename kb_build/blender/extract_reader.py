@@ -28,22 +28,11 @@ from kb_build.blender.same_values import mark_same_values
 from kb_build.blender.tried_facts import RECORDS, add_fact, add_items
 from kb_build.errors import ExtractError
 from kb_build.index.creation import with_whole_calls
+from kb_build.pages.page import Page, Section
 from kb_build.symbols.api_names import HANDLERS, TYPES
+from kb_build.symbols.flag_names import NODE_TYPE, OF_CLASS, STATIC, told_by
 from kb_build.symbols.handlers import handlers_type
-from kb_build.symbols.records import (
-    NODE_TYPE,
-    OF_CLASS,
-    STATIC,
-    EnumItem,
-    Link,
-    Page,
-    Parameter,
-    Section,
-    Symbol,
-    last_name,
-    symbol_fields,
-    told_by,
-)
+from kb_build.symbols.records import EnumItem, Link, Parameter, Symbol, last_name, symbol_fields
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping

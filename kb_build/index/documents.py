@@ -19,9 +19,10 @@ from kb_build.symbols.api_names import REMOVING_VERBS, TYPES
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from kb_build.pages.page import Page
     from kb_build.schema import DocumentKind
     from kb_build.summaries.types import PageSummary
-    from kb_build.symbols.records import Link, Page, Symbol
+    from kb_build.symbols.records import Link, Symbol
 
 FIELDS = ("name", "heading", "context", "body", "related", "expansions")
 # How to write the manual, single add-ons, features kept for old files, the colours of Blender's own windows.

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_build.index.operator_labels import LabelledOperator
-    from kb_build.symbols.records import Page, Symbol
+    from kb_build.pages.page import Page
+    from kb_build.symbols.records import Symbol
 
 _MOST = 2
 _LISTED = re.compile(r"\s*(?:/|,|&| and | or )\s*")

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_build.index.passages import Passage
-    from kb_build.symbols.records import Page, Symbol
+    from kb_build.pages.page import Page
+    from kb_build.symbols.records import Symbol
 
 _SHOWN_VALUES = 8
 _LEAST = 2  # choices below a heading that make it a list of them

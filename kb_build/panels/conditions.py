@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 from kb_build.panels.formulas import TRUE_VALUE, Clause, Need, follows
 from kb_build.panels.idle import any_of
 from kb_build.schema import TEST_OFF, TEST_ON
+from kb_build.symbols.flag_names import READ_ONLY
 from kb_build.symbols.flags import fillers
-from kb_build.symbols.records import READ_ONLY, SettingCondition
+from kb_build.symbols.records import SettingCondition
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -19,7 +19,7 @@ from kb_build.panels.formulas import (
     either_of,
     negated,
 )
-from kb_build.symbols.records import ENUM_FLAG
+from kb_build.symbols.flag_names import ENUM_FLAG
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

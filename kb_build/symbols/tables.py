@@ -21,8 +21,9 @@ from kb_build.usage.examples import SymbolUsage
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 
+    from kb_build.pages.page import Page
     from kb_build.panels.panel_labels import PanelLabel
-    from kb_build.symbols.records import Page, SettingCondition, Symbol
+    from kb_build.symbols.records import SettingCondition, Symbol
     from kb_build.usage.examples import Uses
 
     Row = tuple[object, ...]

@@ -33,7 +33,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Sequence
     from pathlib import Path
 
-    from kb_build.symbols.records import Page, Symbol
+    from kb_build.pages.page import Page
+    from kb_build.symbols.records import Symbol
     from kb_build.usage.scripts import Script
 
 _KEPT = 12

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from kb_build.blender.call_texts import python_value
-from kb_build.symbols.records import READ_ONLY
+from kb_build.symbols.flag_names import READ_ONLY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.errors import StoreError
 from kb_build.flow.blender.facts import LOST_MODULES
-from kb_build.symbols.known_prefixes import KnownPrefixes
+from kb_build.known_prefixes import KnownPrefixes
 from kb_build.symbols.paths import joined_path, split_path
 from simworlds.releases import version_key
 

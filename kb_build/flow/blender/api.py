@@ -48,11 +48,11 @@ from kb_build.flow.values.types import (
 )
 from kb_build.symbols.api_names import COLLECTION, GROUPS, ID, NODE, OBJECT, OPERATORS, STRUCT
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flag_names import ENUM_FLAG, NODE_TYPE, READ_ONLY
 from kb_build.symbols.math_classes import math_class
 from kb_build.symbols.object_data import OBJECT_DATA, OF_EMPTIES, data_class
 from kb_build.symbols.paths import argument_of, is_socket, plain_path
 from kb_build.symbols.python_values import is_new_list
-from kb_build.symbols.records import ENUM_FLAG, NODE_TYPE, READ_ONLY
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

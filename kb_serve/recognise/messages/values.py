@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import OPERATORS
+from kb_build.symbols.flag_names import READ_ONLY
 from kb_build.symbols.paths import last_name, plain_path
-from kb_build.symbols.records import READ_ONLY
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.likely.likely_values import likely_values
 

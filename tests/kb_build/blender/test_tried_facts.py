@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 from statements_in_blender import run_statements
 
-from kb_build.symbols.flags import usual_default
-from kb_build.symbols.lines import default_text, shown_when, type_text
-from kb_build.symbols.records import (
+from kb_build.symbols.flag_names import (
     BARE_DATA,
     EMPTY_AT_START,
     FILLED_AT_START,
@@ -23,6 +21,8 @@ from kb_build.symbols.records import (
     SETS_ALSO,
     WINDOWLESS,
 )
+from kb_build.symbols.flags import usual_default
+from kb_build.symbols.lines import default_text, shown_when, type_text
 from kb_build.symbols.taken import AT_TIMES, Setting, Taken
 
 if TYPE_CHECKING:
