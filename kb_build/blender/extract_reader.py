@@ -20,7 +20,7 @@ from kb_build.blender.call_texts import (
     without_default,
 )
 from kb_build.blender.context_members import mark_absent, name_classes
-from kb_build.blender.docstrings import constructed_by, parse_docstring
+from kb_build.blender.docstrings.docstring import constructed_by, parse_docstring
 from kb_build.blender.manual_links import manual_links
 from kb_build.blender.owners_animated import unmark_unanimated
 from kb_build.blender.references import with_true_references
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
     from pathlib import Path
 
-    from kb_build.blender.docstrings import Docstring
+    from kb_build.blender.docstrings.docstring import Docstring
     from kb_build.panels.idle import Need
 
 _SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
