@@ -32,7 +32,8 @@ from kb_build.pages.page import Page, Section
 from kb_build.symbols.api_names import HANDLERS, TYPES
 from kb_build.symbols.flag_names import NODE_TYPE, OF_CLASS, STATIC, told_by
 from kb_build.symbols.handlers import handlers_type
-from kb_build.symbols.records import EnumItem, Link, Parameter, Symbol, last_name, symbol_fields
+from kb_build.symbols.paths import last_name
+from kb_build.symbols.records import CLASS_LOOKUPS, EnumItem, Link, Parameter, Symbol, symbol_fields
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -330,7 +331,7 @@ def _described_members(rows: Iterable[dict[str, Any]]) -> Iterator[Symbol]:
 
 
 def _subclass_lookups(classes: Iterable[Symbol], prototypes: list[Symbol]) -> Iterator[Symbol]:
-    """``bl_rna_get_subclass`` and ``bl_rna_get_subclass_py``, which the reference lists on every class."""
+    """The functions that look classes up, of each class."""
     for cls in classes:
         for prototype in prototypes:
             yield replace(prototype, path=f"{cls.path}.{prototype.name}", owner=cls.path)
@@ -419,8 +420,7 @@ def _symbols_of(rows: Collection[dict[str, Any]]) -> dict[str, Symbol]:
         elif any(_LISTED_BY_MODULE.fullmatch(parameter.description) for parameter in symbol.parameters):
             symbols[symbol.path] = _with_values_of_module(symbol, symbols)
     symbols = with_true_references(symbols)
-    lookups = ("bl_rna_get_subclass", "bl_rna_get_subclass_py")
-    prototypes = [one for name in lookups if (one := symbols.get(f"bpy.types.bpy_struct.{name}"))]
+    prototypes = [one for name in CLASS_LOOKUPS if (one := symbols.get(f"bpy.types.bpy_struct.{name}"))]
     classes = (one for one in symbols.values() if one.kind == "class" and one.owner == "bpy.types")
     # Last: they are copies of what is corrected above.
     for extra in _subclass_lookups([cls for cls in classes if cls.group == "data"], prototypes):

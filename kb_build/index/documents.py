@@ -59,11 +59,11 @@ class Document:
 
 def _indexed(symbol: Symbol, owner: Symbol | None) -> bool:
     """Whether scripts use the symbol: panels, menus and RNA's own bookkeeping are left out."""
-    if symbol.kind == "enum" or symbol.name.startswith(("bl_rna_get_subclass", "__")):
+    if symbol.kind == "enum" or symbol.is_class_lookup or symbol.name.startswith("__"):
         return False
     if symbol.name in {"input_template", "output_template", "is_registered_node_type"}:
         return False
-    return symbol.group not in {"ui", "operator"} and not (owner and owner.group in {"ui", "operator"})
+    return not (symbol.is_of_interface or (owner and owner.is_of_interface))
 
 
 def _topic_of(symbol: Symbol) -> str:

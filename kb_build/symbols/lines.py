@@ -48,8 +48,9 @@ from kb_build.symbols.flags import (
     operator_areas,
     usual_default,
 )
+from kb_build.symbols.paths import last_name
 from kb_build.symbols.python_values import is_new_list
-from kb_build.symbols.records import FACTORY, STARTUP, last_name
+from kb_build.symbols.records import FACTORY, STARTUP
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

@@ -43,6 +43,8 @@ SCALAR_TYPES = frozenset({"boolean", "int", "float", "string", "enum"})
 RNA_TYPES = SCALAR_TYPES | {"pointer", "collection"}
 # How the types of parameters end that are texts for which None can be given, too.
 OR_NONE = " or None"
+# The functions that every class has from the base of all.
+CLASS_LOOKUPS = ("bl_rna_get_subclass", "bl_rna_get_subclass_py")
 # How the names begin of what is there when Blender starts, among those of new things.
 STARTUP = "start-up "
 FACTORY = "factory "
@@ -230,6 +232,16 @@ class Symbol:
     def name(self) -> str:
         """The last part of the path: what a programmer writes after the dot (or between the brackets)."""
         return socket_name(self.path) if self.kind == "socket" else last_name(self.path)
+
+    @property
+    def is_of_interface(self) -> bool:
+        """Whether it is a class of the interface, or an operator's, and not of data."""
+        return self.group in {"ui", "operator"}
+
+    @property
+    def is_class_lookup(self) -> bool:
+        """Whether it looks up a class below its own: the reference lists these functions on every class."""
+        return self.name in CLASS_LOOKUPS
 
     @property
     def side(self) -> str:

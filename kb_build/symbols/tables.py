@@ -121,7 +121,7 @@ def symbol_names(symbol: Symbol) -> Iterator[tuple[str, int, str]]:
     if symbol.kind == "operator":
         yield key(symbol.target), FORM_SHORT, symbol.path
         yield key(f"bpy.types.{symbol.target}"), FORM_SHORT, symbol.path
-    if symbol.group in {"ui", "operator"} or symbol.name.startswith("bl_rna_get_subclass"):
+    if symbol.is_of_interface or symbol.is_class_lookup:
         return
     yield key(symbol.name), FORM_NAME, symbol.path
     if symbol.kind == "socket":

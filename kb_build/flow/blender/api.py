@@ -44,7 +44,7 @@ from kb_build.flow.values.types import (
     members,
     union,
 )
-from kb_build.symbols.api_names import COLLECTION, GROUPS, ID, OBJECT, OPERATORS, STRUCT
+from kb_build.symbols.api_names import COLLECTION, GROUPS, ID, OBJECT, OPERATOR_METHODS, OPERATORS, STRUCT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flag_names import ENUM_FLAG
 from kb_build.symbols.math_classes import math_class
@@ -65,7 +65,6 @@ _ROOTS = {"bpy.data": f"{T}BlendData", "bpy.context": f"{T}Context"}
 _SCALARS: dict[str, Type] = {"boolean": BOOL, "int": INT, "float": FLOAT, "string": STR}
 MENU_SOCKET = f"{T}NodeSocketMenu"
 _OF_CLASS = "_OT_"
-_OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
 
 
 def part_of_macro(parameter: Parameter) -> str:
@@ -330,4 +329,4 @@ class Api(Classes):
 
     def is_operator_method(self, name: str) -> bool:
         """Whether every operator of ``bpy.ops`` has an attribute of this name."""
-        return name in _OPERATOR_METHODS
+        return name in OPERATOR_METHODS
