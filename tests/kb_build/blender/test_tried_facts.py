@@ -143,6 +143,10 @@ def test_modes_that_nothing_enters_are_told(symbols: Mapping[str, Symbol]) -> No
         ("ParticleSettings.path_start", {"min=0", "max=1"}),
         ("MultiresModifier.levels", {"max=0"}),
         ("Scene.frame_current", {"min=0"}),
+        # Its highest number is refused with all above it, and leaves what there was.
+        ("UDIMTile.number", {"min=1001"}),
+        # Assigning it makes another marker.
+        ("MovieTrackingMarker.frame", set()),
         ("SubsurfModifier.levels", set()),
         ("RigidBodyObject.mass", set()),
         # Its usual number is this machine's.
