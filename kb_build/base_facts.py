@@ -9,9 +9,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kb_build.blender.extract_reader import Extract
+    from kb_build.pages.page import Page
     from kb_build.pages.sources import DocumentationSource
     from kb_build.summaries.types import SummaryRun
-    from kb_build.symbols.records import Page
 
 
 def counts(extract: Extract, pages: Sequence[Page]) -> dict[str, Any]:

@@ -32,10 +32,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Mapping, Sequence
 
     from kb_build.blender.extract_reader import Extract
+    from kb_build.pages.page import Page
     from kb_build.pages.reading import PageReader
     from kb_build.pages.sources import DocumentationSource, MissingSource
     from kb_build.summaries.types import SummaryReport, SummaryRun
-    from kb_build.symbols.records import Page
     from kb_build.symbols.tables import SymbolTables
     from kb_build.usage.usage_index import ScriptUsage
     from kb_build.versions.removed_symbols import RemovedSymbols

@@ -262,7 +262,7 @@ def _check(connection: sqlite3.Connection) -> None:
 
 
 def pack(record: dict[str, Any]) -> bytes:
-    """A record (records.to_json) as deflated JSON: a third of its size, and 20 µs to read back."""
+    """A record (see ``to_json``) as deflated JSON: a third of its size, and 20 µs to read back."""
     return zlib.compress(_JSON.encode(record).encode(), 6)
 
 

@@ -34,6 +34,7 @@ from kb_build.index.query_expansions import load_query_expansions, page_expansio
 from kb_build.index.stem_numbers import StemNumbers
 from kb_build.index.value_names import find_value_names
 from kb_build.index.weights import symbol_weights
+from kb_build.pages.page import PAGE_SOURCES, Page, page_to_json
 from kb_build.recipes.rows import recipe_rows, recipe_words
 from kb_build.schema import (
     APPLICATION_ID,
@@ -45,7 +46,6 @@ from kb_build.schema import (
     UNITS,
     pack,
 )
-from kb_build.symbols.records import PAGE_SOURCES, Link, Page, Symbol, to_json
 from kb_build.symbols.tables import SymbolTables, symbol_tables
 from kb_build.versions.removed_symbols import RemovedSymbols
 from simworlds.files import staged_file
@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from kb_build.blender.buttons import Button
     from kb_build.recipes.tables import Recipe
     from kb_build.summaries.types import PageSummary
+    from kb_build.symbols.records import Link, Symbol
     from kb_build.usage.examples import Uses
 
 
@@ -151,7 +152,7 @@ def _write_pages(
     for page in pages:
         summary = summaries.get(page.slug)
         text, method = (summary.text, summary.method) if summary else ("", "")
-        record = pack(to_json(page))
+        record = pack(page_to_json(page))
         row = (
             page.slug, page.source, page.version, page.title, *places.get(page.slug, ("", 0)), page.url,
             page.content_hash, text, method, record,

@@ -16,10 +16,11 @@ from kb_build.base_file import open_base, read_meta
 from kb_build.errors import StoreError
 from kb_build.index.analysis import key
 from kb_build.live.values import compare_values, runtime_at_hand
+from kb_build.pages.page import page_from_json
 from kb_build.reference_list import WANTED, ReferenceResolution, read_reference, resolve
 from kb_build.schema import FORM_PATH, POSTING_BYTES, UNITS, unpack
 from kb_build.symbols.api_names import TYPES
-from kb_build.symbols.records import page_from_json, symbol_from_json
+from kb_build.symbols.records import symbol_from_json
 from simworlds.how_to_get_bases import how_to_get_again
 from simworlds.sandbox.errors import ProgramFailed
 

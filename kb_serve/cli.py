@@ -8,7 +8,7 @@ import sys
 from contextlib import closing
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -123,7 +123,7 @@ def _command(blender: str | None, limit: int) -> str:
 
 def _print_answer(answer: DocsAnswer, version: str, *, as_json: bool) -> None:
     if as_json:
-        from dataclasses import asdict  # noqa: PLC0415 - only for --json
+        from dataclasses import asdict  # noqa: PLC0415 - only for --raw
 
         click.echo(json.dumps({**asdict(answer), "blender": version}, ensure_ascii=False, indent=2))
     else:
@@ -131,18 +131,27 @@ def _print_answer(answer: DocsAnswer, version: str, *, as_json: bool) -> None:
 
 
 def _print_raw(base: KnowledgeBase, answer: DocsAnswer) -> bool:
-    from kb_build.symbols.paths import plain_path  # noqa: PLC0415 - only for --json
-    from kb_build.symbols.records import to_json  # noqa: PLC0415 - likewise
-
     for hit in answer.hits[:1]:
-        # Enum items and parameters are in the record of their owner.
-        whole = plain_path(hit.id)
-        record = base.symbol(hit.id) or base.page(hit.id) or base.symbol(whole)
-        if record is not None:
-            click.echo(json.dumps(to_json(record), ensure_ascii=False, indent=2))
+        if record := _record(base, hit.id):
+            click.echo(json.dumps(record, ensure_ascii=False, indent=2))
             return True
     click.echo(answer.text, err=True)
     return False
+
+
+def _record(base: KnowledgeBase, ref: str) -> dict[str, Any]:
+    """The record of a symbol or a page, as JSON has it; {} for none."""
+    from kb_build.pages.page import page_to_json  # noqa: PLC0415 - only for --raw
+    from kb_build.symbols.paths import plain_path  # noqa: PLC0415 - likewise
+    from kb_build.symbols.records import to_json  # noqa: PLC0415 - likewise
+
+    if symbol := base.symbol(ref):
+        return to_json(symbol)
+    if page := base.page(ref):
+        return page_to_json(page)
+    # Enum items and parameters are in the record of their owner.
+    owner = base.symbol(plain_path(ref))
+    return to_json(owner) if owner else {}
 
 
 def _bases(blender: str | None, blender_exe: Path | None = None) -> Bases:

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from pathlib import Path
     from types import TracebackType
 
-    from kb_build.symbols.records import Page, Symbol
+    from kb_build.pages.page import Page
+    from kb_build.symbols.records import Symbol
     from kb_serve.answer.docs_answer import DocsAnswer
 
 

@@ -11,7 +11,8 @@ from kb_serve.errors import BadQuery, BaseMissing, KBServeError
 from kb_serve.query_limits import LEAST_TOKENS, LONGEST_QUERY
 
 if TYPE_CHECKING:
-    from kb_build.symbols.records import Page, Symbol
+    from kb_build.pages.page import Page
+    from kb_build.symbols.records import Symbol
     from kb_serve.answer.docs_answer import DocsAnswer
     from kb_serve.bases import Bases
     from kb_serve.knowledge_base import KnowledgeBase

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 from bench.markdown_tables import Table
 from kb_serve.knowledge_base import KnowledgeBase
 from measurements.names import is_told
-from measurements.report import ReportPart, TargetFigure
+from measurements.report import ReportPart
 from measurements.setting import QUERIES, say
+from measurements.shares import share_figure, share_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -57,14 +58,7 @@ def measure(setting: Setting) -> ReportPart:
         rows += _flat(setting.base, sets)
     return ReportPart(
         "compound",
-        tuple(
-            TargetFigure(
-                f"told_all_{name}",
-                _share(map(all, outcomes)),
-                f"{sum(map(all, outcomes))} of {len(outcomes)}",
-            )
-            for name, outcomes in found.items()
-        ),
+        tuple(share_figure(f"told_all_{name}", map(all, outcomes)) for name, outcomes in found.items()),
         (Table("Several names asked for at once", _HEADER, tuple(rows), _NOTE),),
     )
 
@@ -88,14 +82,10 @@ def is_given(name: str, text: str) -> bool:
     return operator in text and re.search(rf"`{argument}`|\b{argument}=", text) is not None
 
 
-def _share(outcomes: Sequence[bool] | map[bool]) -> float:
-    each = list(outcomes)
-    return sum(each) / len(each)
-
-
 def _cells(outcomes: Sequence[Sequence[bool]]) -> tuple[str, ...]:
     names = [is_given for each in outcomes for is_given in each]
-    return (str(len(outcomes)), str(len(names)), f"{_share(names):.3f}", f"{_share(map(all, outcomes)):.3f}")
+    whole = list(map(all, outcomes))
+    return (str(len(outcomes)), str(len(names)), f"{share_of(names):.3f}", f"{share_of(whole):.3f}")
 
 
 def _flat(base: Path, sets: dict[str, list[CompoundQuery]]) -> list[tuple[str, ...]]:

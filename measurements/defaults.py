@@ -11,8 +11,9 @@ from bench.markdown_tables import Table
 from kb_build.base_file import read_meta
 from kb_build.live.values import compare_values, runtime_at_hand
 from kb_build.schema import open_read_only, unpack
+from kb_build.symbols.flag_names import COMPARED, NAME_WHEN_SHOWN
 from kb_build.symbols.flags import empty_when_new, fillers
-from kb_build.symbols.records import COMPARED, NAME_WHEN_SHOWN, symbol_from_json
+from kb_build.symbols.records import symbol_from_json
 from measurements.report import ReportPart, TargetFigure, run_steps
 from measurements.setting import say
 

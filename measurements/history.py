@@ -16,8 +16,9 @@ from bench.markdown_tables import Table
 from kb_build.symbols.paths import split_path
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.reader import BaseReader
-from measurements.report import ReportPart, TargetFigure
+from measurements.report import ReportPart
 from measurements.setting import QUERIES
+from measurements.shares import share_figure
 from simworlds.releases import version_key
 
 if TYPE_CHECKING:
@@ -85,9 +86,8 @@ def measure(setting: Setting) -> ReportPart:
         for half in halves
     ]
     figures = [
-        TargetFigure(f"history_{column}", sum(met) / len(met), f"{sum(met)} of {len(met)}")
+        share_figure(f"history_{column}", (getattr(verdict, column) for verdict in verdicts))
         for column in columns
-        for met in [[getattr(verdict, column) for verdict in verdicts]]
     ]
     listed = Table(
         "Removed symbols of scripts",

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
 from kb_serve.knowledge_base import KnowledgeBase
-from measurements.report import ReportPart, TargetFigure
+from measurements.report import ReportPart
 from measurements.retrieval import is_hit, read_queries, unknown_labels
 from measurements.setting import QUERIES, say
+from measurements.shares import count_of, share_figure, share_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -47,7 +48,7 @@ def measure(setting: Setting) -> ReportPart:
         rows += _flat(setting.base, sets)
     unknown = [label for queries in sets.values() for label in unknown_labels(queries, setting.base)]
     figures = [
-        TargetFigure(f"{name}_{key}", _share(list(map(is_told, outcomes))), _of(list(map(is_told, outcomes))))
+        share_figure(f"{name}_{key}", map(is_told, outcomes))
         for name, outcomes in found.items()
         for key, is_told in (("first", _is_first), ("five", _is_among))
     ]
@@ -69,21 +70,15 @@ def _is_among(outcome: tuple[Query, _Told]) -> bool:
     return is_hit(query, [*ids[:FEW], *named])
 
 
-def _share(outcomes: Sequence[bool]) -> float:
-    return sum(outcomes) / len(outcomes)
-
-
-def _of(outcomes: Sequence[bool]) -> str:
-    return f"{sum(outcomes)} of {len(outcomes)}"
-
-
 def _cells(outcomes: Sequence[tuple[Query, _Told]]) -> tuple[str, ...]:
     first, among = list(map(_is_first, outcomes)), list(map(_is_among, outcomes))
     forms = [
-        _of([is_first for is_first, (query, _) in zip(first, outcomes, strict=True) if query.kind == form])
+        count_of(
+            [is_first for is_first, (query, _) in zip(first, outcomes, strict=True) if query.kind == form]
+        )
         for form in _FORMS
     ]
-    return (str(len(outcomes)), f"{_share(first):.3f}", f"{_share(among):.3f}", *forms)
+    return (str(len(outcomes)), f"{share_of(first):.3f}", f"{share_of(among):.3f}", *forms)
 
 
 def _flat(base: Path, sets: dict[str, list[Query]]) -> list[tuple[str, ...]]:

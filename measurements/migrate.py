@@ -31,7 +31,7 @@ from kb_check.registered.package import paths_in_package
 from kb_check.running.reach import RunReach
 from measurements.blender_scripts import scripts_folder
 from measurements.report import ReportPart, TargetFigure
-from measurements.setting import say
+from measurements.setting import BLENDER, say
 from simworlds.releases import version_key
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from measurements.setting import Setting
     from simworlds.sandbox.runtime import Runtime
 
-NEWER = ("4.2", "4.5", "5.1")
+NEWER = ("4.2", "4.5", BLENDER)  # of those that scripts are run in
 _ADDONS, _TEMPLATES = "addons", "templates_py"
 _MOST_ADDONS = 60
 _JOBS = 2

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 from bench.markdown_tables import Table
 from kb_serve.answer.budget import tokens
 from kb_serve.knowledge_base import KnowledgeBase
-from measurements.report import ReportPart, TargetFigure
+from measurements.report import ReportPart
 from measurements.retrieval import is_hit, read_queries, unknown_labels
 from measurements.setting import QUERIES, say
+from measurements.shares import share_figure
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -62,14 +63,7 @@ def measure(setting: Setting) -> ReportPart:
     unknown = [label for queries in sets.values() for label in unknown_labels(queries, setting.base)]
     return ReportPart(
         "names",
-        tuple(
-            TargetFigure(
-                f"told_{name}",
-                sum(o.told for o in outcomes) / len(outcomes),
-                f"{sum(o.told for o in outcomes)} of {len(outcomes)}",
-            )
-            for name, outcomes in found.items()
-        ),
+        tuple(share_figure(f"told_{name}", (o.told for o in outcomes)) for name, outcomes in found.items()),
         (Table("Names that code needs, asked for in plain words", _HEADER, tuple(rows), _NOTE),),
         (f"labels that this base does not know: {', '.join(unknown)}",) if unknown else (),
     )

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
 from kb_build.flow.blender.symbols import BaseSymbols
-from kb_build.symbols.records import READ_ONLY
+from kb_build.symbols.flag_names import READ_ONLY
 from kb_build.usage.scripts import blender_scripts, read_script
 from kb_check.checker import Checker
 from kb_check.text.salvage import parses

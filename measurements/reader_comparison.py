@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kb_build.symbols.records import Page
+    from kb_build.pages.page import Page
 
 _TOKEN = re.compile(r"\w+")
 

@@ -19,7 +19,8 @@ from kb_serve.answer.known.asked_recipe import RECIPE
 from kb_serve.knowledge_base import KnowledgeBase
 from measurements.compound import read_compound
 from measurements.report import ReportPart, TargetFigure
-from measurements.setting import QUERIES, say
+from measurements.setting import BLENDERS, QUERIES, say
+from measurements.shares import share_figure, share_of
 from simworlds.sandbox.errors import ProgramFailed
 from simworlds.sandbox.runtime import run_script
 
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
 
 SETS = ("tasks", "tasks_kept")
 LINES = 40
-_VERSIONS = ("3.4", "4.2", "4.5", "5.0", "5.1", "5.2")
 _RUNNER = Path(__file__).parent / "scripts" / "run_recipes.py"
 _SECONDS = 600.0
 _RUN = ("Blender", "recipes", "did their task")
@@ -101,11 +101,7 @@ def measure(setting: Setting) -> ReportPart:
         (
             TargetFigure("recipes_run", done / max(1, run), f"{done} of {run} runs"),
             *(
-                TargetFigure(
-                    f"answered_{name}",
-                    _share([outcome.answered for outcome in outcomes]),
-                    f"{sum(outcome.answered for outcome in outcomes)} of {len(outcomes)}",
-                )
+                share_figure(f"answered_{name}", (outcome.answered for outcome in outcomes))
                 for name, outcomes in asked.items()
             ),
         ),
@@ -118,7 +114,7 @@ def _run(setting: Setting) -> tuple[list[tuple[str, ...]], list[str]]:
     """A row for each Blender, and a line for each recipe that fails there."""
     rows: list[tuple[str, ...]] = []
     faults: list[str] = []
-    for version in _VERSIONS:
+    for version in BLENDERS:
         runtime = runtime_at_hand(version, setting.home)
         if runtime is None:
             continue
@@ -144,16 +140,12 @@ def _ask(base: Path, queries: Sequence[CompoundQuery]) -> list[Outcome]:
     ]
 
 
-def _share(outcomes: Sequence[bool]) -> float:
-    return sum(outcomes) / max(1, len(outcomes))
-
-
 def _cells(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
     by_recipe = [outcome.answered for outcome in outcomes if outcome.has_recipe]
     return (
         str(len(outcomes)),
-        f"{_share([outcome.answered for outcome in outcomes]):.3f}",
+        f"{share_of([outcome.answered for outcome in outcomes]):.3f}",
         str(len(by_recipe)),
-        f"{_share(by_recipe):.3f}",
-        f"{_share([outcome.answered_without for outcome in outcomes]):.3f}",
+        f"{share_of(by_recipe):.3f}",
+        f"{share_of([outcome.answered_without for outcome in outcomes]):.3f}",
     )

@@ -24,8 +24,8 @@ from simworlds.files import write_whole
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from kb_build.pages.page import Page
     from kb_build.summaries.types import PageSummary
-    from kb_build.symbols.records import Page
 
 _FOLDER = Path(__file__).parents[1] / "corpora" / "summaries"
 

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.blender.facts import NARROWER
 from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.flag_names import EVALUATED, HIDDEN, ITERATED
 from kb_build.symbols.lineages import lineage
 from kb_build.symbols.lines import item_of, of_evaluated
-from kb_build.symbols.records import EVALUATED, HIDDEN, ITERATED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

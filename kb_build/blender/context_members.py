@@ -7,7 +7,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from kb_build.symbols.api_names import TYPES
-from kb_build.symbols.records import WITHOUT_SHOWN
+from kb_build.symbols.flag_names import WITHOUT_SHOWN
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

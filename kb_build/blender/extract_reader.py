@@ -20,7 +20,7 @@ from kb_build.blender.call_texts import (
     without_default,
 )
 from kb_build.blender.context_members import mark_absent, name_classes
-from kb_build.blender.docstrings import constructed_by, parse_docstring
+from kb_build.blender.docstrings.docstring import constructed_by, parse_docstring
 from kb_build.blender.manual_links import manual_links
 from kb_build.blender.owners_animated import unmark_unanimated
 from kb_build.blender.references import with_true_references
@@ -28,28 +28,18 @@ from kb_build.blender.same_values import mark_same_values
 from kb_build.blender.tried_facts import RECORDS, add_fact, add_items
 from kb_build.errors import ExtractError
 from kb_build.index.creation import with_whole_calls
+from kb_build.pages.page import Page, Section
 from kb_build.symbols.api_names import HANDLERS, TYPES
+from kb_build.symbols.flag_names import NODE_TYPE, OF_CLASS, STATIC, told_by
 from kb_build.symbols.handlers import handlers_type
-from kb_build.symbols.records import (
-    NODE_TYPE,
-    OF_CLASS,
-    STATIC,
-    EnumItem,
-    Link,
-    Page,
-    Parameter,
-    Section,
-    Symbol,
-    last_name,
-    symbol_fields,
-    told_by,
-)
+from kb_build.symbols.paths import last_name
+from kb_build.symbols.records import CLASS_LOOKUPS, EnumItem, Link, Parameter, Symbol, symbol_fields
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping
     from pathlib import Path
 
-    from kb_build.blender.docstrings import Docstring
+    from kb_build.blender.docstrings.docstring import Docstring
     from kb_build.panels.idle import Need
 
 _SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
@@ -341,7 +331,7 @@ def _described_members(rows: Iterable[dict[str, Any]]) -> Iterator[Symbol]:
 
 
 def _subclass_lookups(classes: Iterable[Symbol], prototypes: list[Symbol]) -> Iterator[Symbol]:
-    """``bl_rna_get_subclass`` and ``bl_rna_get_subclass_py``, which the reference lists on every class."""
+    """The functions that look classes up, of each class."""
     for cls in classes:
         for prototype in prototypes:
             yield replace(prototype, path=f"{cls.path}.{prototype.name}", owner=cls.path)
@@ -430,8 +420,7 @@ def _symbols_of(rows: Collection[dict[str, Any]]) -> dict[str, Symbol]:
         elif any(_LISTED_BY_MODULE.fullmatch(parameter.description) for parameter in symbol.parameters):
             symbols[symbol.path] = _with_values_of_module(symbol, symbols)
     symbols = with_true_references(symbols)
-    lookups = ("bl_rna_get_subclass", "bl_rna_get_subclass_py")
-    prototypes = [one for name in lookups if (one := symbols.get(f"bpy.types.bpy_struct.{name}"))]
+    prototypes = [one for name in CLASS_LOOKUPS if (one := symbols.get(f"bpy.types.bpy_struct.{name}"))]
     classes = (one for one in symbols.values() if one.kind == "class" and one.owner == "bpy.types")
     # Last: they are copies of what is corrected above.
     for extra in _subclass_lookups([cls for cls in classes if cls.group == "data"], prototypes):

@@ -8,8 +8,8 @@ from collections import defaultdict
 from functools import cache
 from typing import TYPE_CHECKING
 
+from kb_build.known_prefixes import KnownPrefixes
 from kb_build.symbols.api_names import ID, TYPES
-from kb_build.symbols.known_prefixes import KnownPrefixes
 from kb_build.symbols.lineages import lineage
 from kb_build.symbols.records import Link
 

@@ -11,7 +11,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 from kb_build.symbols.api_names import ID, TYPES
-from kb_build.symbols.records import ANIMATABLE
+from kb_build.symbols.flag_names import ANIMATABLE
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Iterator, Mapping

@@ -6,7 +6,7 @@ import ast
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
-from kb_build.symbols.records import SAME_VALUE
+from kb_build.symbols.flag_names import SAME_VALUE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

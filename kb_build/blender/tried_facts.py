@@ -8,7 +8,7 @@ from kb_build.blender.call_texts import LEFT_OUT
 from kb_build.blender.enum_contexts import items_in_contexts
 from kb_build.blender.refused_calls import refusals
 from kb_build.symbols.accepted import OUTCOMES, TAKES
-from kb_build.symbols.records import (
+from kb_build.symbols.flag_names import (
     ACCEPTS,
     ALSO,
     ANY,

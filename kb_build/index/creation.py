@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.index.analysis import key, terms
-from kb_build.symbols.api_names import NODE, OPERATORS, TYPES
+from kb_build.symbols.api_names import NEW_SOCKET, NODE, OPERATORS, TYPES
 from kb_build.symbols.lines import held
 
 if TYPE_CHECKING:
@@ -32,7 +32,6 @@ _USUAL_TREE = "geometry"  # which most scripts make groups of
 _KIND_OF_TREE = re.compile(r"(\w+) node tree")  # as it is called that takes a value
 _ARGUMENT = re.compile(r"(?<=, )\w+(?=[,)])")  # one that is no text
 _SIZE = "8"  # pixels
-_NEW_SOCKET = f"{TYPES}NodeTreeInterface.new_socket"
 
 # Class → the method that makes it, and a call.
 _METHODS = {
@@ -212,7 +211,7 @@ class _Calls:
 
     def _of_interfaces(self) -> Iterator[tuple[str, Creation]]:
         """A group's sockets: the items of its interface, and what they become on its nodes."""
-        maker = self._symbols.get(_NEW_SOCKET)
+        maker = self._symbols.get(NEW_SOCKET)
         if maker is None:
             return
         for parameter in maker.parameters:
@@ -224,7 +223,7 @@ class _Calls:
                 made = f"NodeTreeInterface{item.identifier.removeprefix('Node')}"
                 for cls, choice in ((made, item.identifier), (item.identifier, "")):
                     if TYPES + cls in self._symbols:
-                        yield TYPES + cls, Creation(call, _NEW_SOCKET, choice)
+                        yield TYPES + cls, Creation(call, NEW_SOCKET, choice)
 
     def _arguments(self, maker: Symbol, cls: Symbol, choice: str, *, block: str) -> str:
         given = [

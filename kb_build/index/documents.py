@@ -14,19 +14,19 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.passages import Passage, find_passages
 from kb_build.pages.definitions import passage_text
-from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.api_names import REMOVING_VERBS, TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from kb_build.pages.page import Page
     from kb_build.schema import DocumentKind
     from kb_build.summaries.types import PageSummary
-    from kb_build.symbols.records import Link, Page, Symbol
+    from kb_build.symbols.records import Link, Symbol
 
 FIELDS = ("name", "heading", "context", "body", "related", "expansions")
 # How to write the manual, single add-ons, features kept for old files, the colours of Blender's own windows.
 _RARELY_ASKED = re.compile(r"contribute/|addons/|freestyle\.|legacy|bpy\.types\.(?:Theme|\w*ViewerPath)")
-_REMOVING = frozenset({"remove", "clear", "delete", "free", "unlink", "discard", "unassign"})
 _OF_NODES = re.compile(
     r".*/(?:geometry|shader)_nodes/|compositing/types/|bpy\.types\.\w*Node|bpy\.ops\.node\."
 )
@@ -59,11 +59,11 @@ class Document:
 
 def _indexed(symbol: Symbol, owner: Symbol | None) -> bool:
     """Whether scripts use the symbol: panels, menus and RNA's own bookkeeping are left out."""
-    if symbol.kind == "enum" or symbol.name.startswith(("bl_rna_get_subclass", "__")):
+    if symbol.kind == "enum" or symbol.is_class_lookup or symbol.name.startswith("__"):
         return False
     if symbol.name in {"input_template", "output_template", "is_registered_node_type"}:
         return False
-    return symbol.group not in {"ui", "operator"} and not (owner and owner.group in {"ui", "operator"})
+    return not (symbol.is_of_interface or (owner and owner.is_of_interface))
 
 
 def _topic_of(symbol: Symbol) -> str:
@@ -224,7 +224,9 @@ def kind_of(document: Document) -> DocumentKind:
         return "index"
     if _RARELY_ASKED.search(document.ref):
         return "rarely asked"
-    if document.kind == "function" and not _REMOVING.isdisjoint(document.ref.rpartition(".")[2].split("_")):
+    if document.kind == "function" and not REMOVING_VERBS.isdisjoint(
+        document.ref.rpartition(".")[2].split("_")
+    ):
         return "removing"
     if _OF_NODES.match(document.ref):
         return "node"

@@ -8,9 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.blender.facts import NARROWER
 from kb_build.symbols.api_names import TYPES
-from kb_build.symbols.flags import empty_when_new
-from kb_build.symbols.lineages import lineage
-from kb_build.symbols.records import (
+from kb_build.symbols.flag_names import (
     EMPTY,
     EMPTY_AT_START,
     ITERATED,
@@ -18,6 +16,8 @@ from kb_build.symbols.records import (
     WITHOUT_AREA,
     WITHOUT_SHOWN,
 )
+from kb_build.symbols.flags import empty_when_new
+from kb_build.symbols.lineages import lineage
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

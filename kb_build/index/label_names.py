@@ -23,10 +23,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_build.index.operator_labels import LabelledOperator
-    from kb_build.symbols.records import Page, Symbol
+    from kb_build.pages.page import Page
+    from kb_build.symbols.records import Symbol
 
 _MOST = 2
-_LISTED = re.compile(r"\s*(?:/|,|&| and | or )\s*")
+# Between what a label lists.
+LISTED = re.compile(r"\s*(?:/|,|&| and | or )\s*")
 
 
 class LabelName(NamedTuple):
@@ -85,7 +87,7 @@ def _of_page(
             names = dict.fromkeys(called.values())
         else:
             names = dict.fromkeys(filter(None, (_name(symbol, subject) for symbol in meant)))
-        if 0 < len(names) <= max(_MOST, len(_LISTED.split(label))):
+        if 0 < len(names) <= max(_MOST, len(LISTED.split(label))):
             yield LabelName(page.slug, *place, ", ".join(f"`{name}`" for name in names))
 
 
@@ -98,7 +100,7 @@ def _called(label: str, symbols: Sequence[Symbol]) -> Sequence[Symbol]:
         return exactly
     words = set(terms_of(label))
     related = [symbol for symbol in symbols if words.intersection(terms_of(symbol.label))]
-    lists_them = len(_LISTED.split(label)) > 1
+    lists_them = len(LISTED.split(label)) > 1
     return symbols if lists_them or len(related) == len(symbols) else ()
 
 
@@ -139,7 +141,7 @@ def _above(cls: str, by_path: Mapping[str, Symbol]) -> Iterator[str]:
 
 def _in_order(label: str, symbols: Sequence[Symbol]) -> list[Symbol]:
     """In the order in which a label lists them: End and Start of "Start, End" change places."""
-    parts = [set(terms_of(part)) for part in _LISTED.split(label)]
+    parts = [set(terms_of(part)) for part in LISTED.split(label)]
 
     def place(symbol: Symbol) -> int:
         own = {*terms_of(symbol.label), *terms_of(symbol.name)}

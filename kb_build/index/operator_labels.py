@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from kb_build.blender.buttons import Button
-    from kb_build.symbols.records import Link, Page, Symbol
+    from kb_build.pages.page import Page
+    from kb_build.symbols.records import Link, Symbol
 
 _MEANINGLESS = ("bpy.ops.wm.context_", "bpy.ops.wm.call_")  # without arguments that are computed
 _SHORTCUT = re.compile(r"\s*`[^`]*`(?:\s*[,/]\s*`[^`]*`)*$")

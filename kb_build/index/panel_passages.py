@@ -17,13 +17,14 @@ from kb_build.index.analysis import key
 from kb_build.index.passages import Passage, key_of_term, keys_of_term, says_something
 from kb_build.pages.definitions import term_lines
 from kb_build.symbols.api_names import ID
-from kb_build.symbols.records import INVERTED
+from kb_build.symbols.flag_names import INVERTED
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 
+    from kb_build.pages.page import Page, Section
     from kb_build.panels.panel_labels import PanelLabel
-    from kb_build.symbols.records import Link, Page, Section, Symbol
+    from kb_build.symbols.records import Link, Symbol
 
 _PANEL = re.compile(r"\*\*Panel:\*\* *(.+)")
 _STEP = "‣"

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from kb_build.index.label_names import LabelName
     from kb_build.index.passages import Passage
-    from kb_build.symbols.records import Page
+    from kb_build.pages.page import Page
 
 
 def passage_rows(

@@ -18,12 +18,13 @@ from kb_build.index.analysis import key
 from kb_build.index.analysis import terms as terms_of
 from kb_build.pages.definitions import passage_text, term_lines
 from kb_build.symbols.api_names import TYPES
-from kb_build.symbols.records import INVERTED
+from kb_build.symbols.flag_names import INVERTED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from kb_build.symbols.records import Link, Page, Symbol
+    from kb_build.pages.page import Page
+    from kb_build.symbols.records import Link, Symbol
 
 _KINDS = frozenset({"property", "socket", "operator", "class"})
 _BEGINNING = 400  # letters of a definition that say what it is about

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.index.analysis import key
 from kb_build.index.analysis import terms as terms_of
 from kb_build.index.analysis import words as words_of
-from kb_build.index.label_names import LabelName
+from kb_build.index.label_names import LISTED, LabelName
 from kb_build.pages.definitions import term_of
 from kb_build.symbols.api_names import TYPES
 
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_build.index.passages import Passage
-    from kb_build.symbols.records import Page, Symbol
+    from kb_build.pages.page import Page
+    from kb_build.symbols.records import Symbol
 
 _SHOWN_VALUES = 8
 _LEAST = 2  # choices below a heading that make it a list of them
 _LIKE = 3  # letters that words have in common: Vertices, Vertex
 _BULLET = re.compile(r"\s*- \*\*(?P<term>.+?):?\*\*")
 _LINKED = re.compile(r"\[([^\]]*)\]\([^)]*\)")
-_LISTED = re.compile(r"\s*(?:/|,|&| and | or )\s*")
 _NAMED = r"\b(?:the|an?) [*\"]*([A-Z][\w-]*(?: [A-Z0-9][\w-]*)?)[*\"]* {}\b"
 
 
@@ -68,7 +68,7 @@ class _Choices:
 
     def identifiers(self, term: str) -> list[str]:
         """The items that a term means, all of those that it lists; empty where one is not surely known."""
-        found = [self._identifier(part) for part in (term, *_LISTED.split(term))]
+        found = [self._identifier(part) for part in (term, *LISTED.split(term))]
         if found[0]:
             return found[:1]
         return found[1:] if all(found[1:]) else []

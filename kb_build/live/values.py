@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from kb_build.schema import open_read_only, unpack
 from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.flag_names import EMPTY, FILLED_ON
 from kb_build.symbols.flags import empty_when_new, fillers
 from kb_build.symbols.lines import literal
-from kb_build.symbols.records import EMPTY, FILLED_ON, symbol_from_json
+from kb_build.symbols.records import symbol_from_json
 from simworlds.installed import installed_bpy
 from simworlds.sandbox.program import Program
 from simworlds.sandbox.runtime import Runtime, run_program

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING
 
 from kb_build.errors import SourceError
 from kb_build.fingerprint import reader_digest
-from kb_build.symbols.records import page_from_json, to_json
+from kb_build.pages.page import page_from_json, page_to_json
 from simworlds.errors import remedy
 from simworlds.files import remove_unfinished_files, staged_file
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from kb_build.pages.page import Page, PageSource
     from kb_build.pages.sources import DocumentationSource
-    from kb_build.symbols.records import Page, PageSource
     from simworlds.terminal.progress import Progress
 
 _KEPT = 12
@@ -74,7 +74,7 @@ def _keep(pages: list[Page], path: Path) -> None:
             gzip.open(part, "wt", encoding="utf-8", compresslevel=_LEVEL) as file,
         ):
             for page in pages:
-                file.write(json.dumps(to_json(page), ensure_ascii=False) + "\n")
+                file.write(json.dumps(page_to_json(page), ensure_ascii=False) + "\n")
     except OSError as error:
         raise SourceError(
             f"the pages of {path.name} cannot be kept in {path.parent}: {error}. {remedy(error)}, or set "

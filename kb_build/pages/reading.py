@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from pathlib import Path
     from types import TracebackType
 
+    from kb_build.pages.page import Page
     from kb_build.pages.sources import DocumentationSource
-    from kb_build.symbols.records import Page
     from simworlds.terminal.progress import Progress
 
 _REPORT_SECONDS = 0.1

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.panels.formulas import TRUE_VALUE, Clause, Need, follows
+from kb_build.panels.formulas import YES, Clause, Need, follows
 from kb_build.panels.idle import any_of
 from kb_build.schema import TEST_OFF, TEST_ON
+from kb_build.symbols.flag_names import READ_ONLY
 from kb_build.symbols.flags import fillers
-from kb_build.symbols.records import READ_ONLY, SettingCondition
+from kb_build.symbols.records import SettingCondition
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol
 
 _MOST_CLAUSES = 3
-_YES = frozenset({TRUE_VALUE})
 _MOST_VALUES = 6
 # Classes whose settings Blender also shows by templates and panels that are not written in Python.
 _SHOWN_BY_TEMPLATES = frozenset(
@@ -77,7 +77,7 @@ def _is_of(need: Need, own: set[str], symbols: Symbols) -> bool:
 def _rank(row: tuple[Clause, bool]) -> tuple[int, bool, bool, list[str]]:
     """Switches that grey a setting out come first."""
     clause, hides = row
-    is_switch = all(need.values == _YES and not need.relation and need.is_in for need in clause)
+    is_switch = all(need.values == YES and not need.relation and need.is_in for need in clause)
     return len(clause), hides, not is_switch, sorted(need.gate for need in clause)
 
 
@@ -114,7 +114,7 @@ def _items(need: Need, symbols: Symbols) -> set[str]:
 
 def _says_something(need: Need, symbols: Symbols) -> bool:
     items = _items(need, symbols)
-    if need.relation or need.values == _YES or not items:
+    if need.relation or need.values == YES or not items:
         return bool(need.values) and len(need.values) <= _MOST_VALUES
     values = need.values & items
     return bool(values) and len(values) < len(items) and len(values) <= _MOST_VALUES
@@ -127,7 +127,7 @@ def _test(need: Need, symbols: Symbols) -> str:
     if need.relation:
         operator, _, number = need.relation.partition(" ")
         return f"{operator if need.is_in else _OPPOSITE[operator]} {number}"
-    if need.values == _YES:
+    if need.values == YES:
         return TEST_ON if need.is_in else TEST_OFF
     items = _items(need, symbols)
     values = sorted(map(repr, need.values & items if items else need.values))

@@ -1,4 +1,4 @@
-"""Reads the functions that draw: where each shows a property, and under which conditions it does so and can be set.
+"""Reads a function that draws: where it shows a property, and under which conditions it does so and can be set.
 Buttons of operators are read as properties are: where they are shown, and can be pressed.
 
 A layout's ``active`` and ``enabled`` count for all that is drawn in it, whenever they are set: Blender looks at the
@@ -11,37 +11,22 @@ import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.flow.syntax.trees import children, walk
+from kb_build.flow.syntax.trees import walk
 from kb_build.flow.values.types import UNKNOWN, Instance, literal_texts
-from kb_build.panels.expressions import Conditions, Held, Script, is_unknown
+from kb_build.panels.expressions import Conditions, Held, is_unknown
 from kb_build.panels.formulas import FALSE, TRUE, Formula, all_of, chosen, either_of, is_large, negated
+from kb_build.panels.layout_calls import MAKES_LAYOUT, OFFERS, SHOWS, shown_property
 from kb_build.symbols.api_names import OPERATORS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Mapping
 
-    from kb_build.flow.analysis import Analysis
-    from kb_build.flow.blender.symbols import Symbols
+    from kb_build.panels.expressions import Script
 
 _LAYOUT = "bpy.types.UILayout"
 _STATES = ("active", "enabled")
 _DEEPEST_CALL = 3
 _LONGEST_TEXT = 300
-# Methods that show the property that their second argument names.
-SHOWS = frozenset(
-    {
-        "prop", "prop_search", "prop_enum", "prop_menu_enum", "props_enum", "prop_tabs_enum", "prop_with_popover",
-        "template_ID",
-    }
-)  # fmt: skip
-# Methods that show a button for the operator that their first argument names.
-_OFFERS = frozenset({"operator", "operator_menu_enum", "operator_enum", "operator_menu_hold"})
-_MAKES_LAYOUT = frozenset(
-    {
-        "row", "column", "column_flow", "grid_flow", "box", "split", "menu_pie",
-        "panel", "panel_prop",  # a header and a body
-    }
-)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,94 +72,6 @@ class _Shown:
     owner: str
     layout: int | None
     path: Formula
-
-
-def shows_something(code: str) -> bool:
-    """Whether a script's text calls what shows a property, or an operator: most do not, and need not be read."""
-    return any(f".{name}(" in code for name in SHOWS | _OFFERS)
-
-
-def shown_property(call: ast.Call) -> tuple[ast.expr | None, ast.expr | None]:
-    """What a call of one of ``SHOWS`` gets: what has the property, and what names it; None for what is left out."""
-    given = {keyword.arg: keyword.value for keyword in call.keywords}
-    owner = call.args[0] if call.args else given.get("data")
-    return owner, call.args[1] if len(call.args) > 1 else given.get("property")
-
-
-def places_in(analysis: Analysis, symbols: Symbols) -> list[Place]:
-    """Where a script shows properties."""
-    tree = analysis.tree
-    if tree is None:
-        return []
-    functions = _showing(tree)
-    if not functions:
-        return []
-    script = Script(analysis, symbols)
-    script.functions = {node.name: node for node in tree.body if isinstance(node, ast.FunctionDef)}
-    classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
-    script.methods = {name: _methods(name, classes) for name in classes}
-    inherited = {base for cls in classes.values() for base in _bases(cls)}
-    places: list[Place] = []
-    for function, cls in functions:
-        name = cls.name if cls is not None and cls.name in classes else ""
-        # A class that others derive from may be drawn under their polls.
-        is_panel = name and function.name.startswith("draw") and name not in inherited
-        polls = _polls(name, script, classes) if is_panel else ()
-        try:
-            places += Drawing(script, name).read(function, all_of(*polls))
-        except RecursionError:
-            continue  # nobody writes panels like that by hand
-    return places
-
-
-def _showing(tree: ast.Module) -> list[tuple[ast.FunctionDef, ast.ClassDef | None]]:
-    """The functions that show properties, with the classes whose methods they are."""
-    found: dict[ast.FunctionDef, ast.ClassDef | None] = {}
-    queue: list[tuple[ast.AST, ast.FunctionDef | None, ast.ClassDef | None]] = [(tree, None, None)]
-    while queue:
-        node, function, cls = queue.pop()
-        if isinstance(node, ast.Call):
-            if (
-                function is not None
-                and isinstance(node.func, ast.Attribute)
-                and node.func.attr in SHOWS | _OFFERS
-            ):
-                found.setdefault(function, cls)
-        elif isinstance(node, ast.FunctionDef):
-            function, cls = node, cls if function is None else None
-        elif isinstance(node, ast.ClassDef):
-            function, cls = None, node
-        queue += [(child, function, cls) for child in children(node)]
-    return [*found.items()]
-
-
-def _bases(cls: ast.ClassDef) -> list[str]:
-    return [base.id for base in cls.bases if isinstance(base, ast.Name)]
-
-
-def _methods(name: str, classes: Mapping[str, ast.ClassDef], depth: int = 8) -> dict[str, ast.FunctionDef]:
-    """A class's functions by name, those of its bases in the script included."""
-    if name not in classes or not depth:
-        return {}
-    found: dict[str, ast.FunctionDef] = {}
-    for base in reversed(_bases(classes[name])):
-        found |= _methods(base, classes, depth - 1)
-    return found | {node.name: node for node in classes[name].body if isinstance(node, ast.FunctionDef)}
-
-
-def _polls(
-    name: str, script: Script, classes: Mapping[str, ast.ClassDef], depth: int = 4
-) -> Iterator[Formula]:
-    """The conditions under which Blender draws a panel: its own, and those of the panels that it lies in."""
-    if poll := script.methods[name].get("poll"):
-        yield Drawing(script, name).returned(poll, {})
-    for node in classes[name].body:
-        match node:
-            case ast.Assign(targets=[ast.Name(id="bl_parent_id")], value=ast.Constant(value=str(parent))):
-                if parent in classes and depth:
-                    yield from _polls(parent, script, classes, depth - 1)
-            case _:
-                pass
 
 
 class Drawing(Conditions):
@@ -262,7 +159,7 @@ class Drawing(Conditions):
             case ast.Call(func=ast.Attribute(value=receiver, attr=name)):
                 if node not in self._made:
                     parent = self._layout(receiver)
-                    if parent is None or name not in _MAKES_LAYOUT:
+                    if parent is None or name not in MAKES_LAYOUT:
                         return None
                     self._made[node] = self._new_layout(parent)
                 return self._made[node]
@@ -330,7 +227,7 @@ class Drawing(Conditions):
             if isinstance(part, ast.Call) and isinstance(part.func, ast.Attribute):
                 if part.func.attr in SHOWS:
                     self._show(part, part.func.value)
-                elif part.func.attr in _OFFERS:
+                elif part.func.attr in OFFERS:
                     self._offer(part, part.func.value)
         for part in parts:
             if isinstance(part, ast.NamedExpr):

@@ -10,7 +10,7 @@ from kb_build.flow.values.types import Plain, Sequence, Tuple, literal, members
 from kb_build.panels.formulas import (
     FALSE,
     TRUE,
-    TRUE_VALUE,
+    YES,
     Answer,
     Formula,
     Question,
@@ -19,7 +19,7 @@ from kb_build.panels.formulas import (
     either_of,
     negated,
 )
-from kb_build.symbols.records import ENUM_FLAG
+from kb_build.symbols.flag_names import ENUM_FLAG
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from kb_build.flow.blender.symbols import Symbols
     from kb_build.flow.values.types import Type
 
-_YES = frozenset({TRUE_VALUE})
 # What the truth of a value says, by the type of its property.
 _TRUTH = {"pointer": "is set", "int": "is not 0", "float": "is not 0", "string": "is not empty"}
 _ORDER: dict[type[ast.cmpop], str] = {
@@ -56,15 +55,13 @@ class Script:
 
     analysis: Analysis
     symbols: Symbols
-    functions: Mapping[str, ast.FunctionDef] = field(default_factory=dict[str, ast.FunctionDef])
-    methods: Mapping[str, Mapping[str, ast.FunctionDef]] = field(
-        default_factory=dict[str, "Mapping[str, ast.FunctionDef]"]
-    )
+    functions: Mapping[str, ast.FunctionDef]
+    methods: Mapping[str, Mapping[str, ast.FunctionDef]]
     fresh: int = 0
 
     def unknown(self) -> Answer:
         """A condition of which nothing is known."""
-        return Answer(Question(self.unknown_text()), _YES)
+        return Answer(Question(self.unknown_text()), YES)
 
     def unknown_text(self) -> str:
         """The text of something that no other expression is."""
@@ -139,7 +136,7 @@ class Conditions:
             case ast.Call():
                 return self._call(node)
             case _:
-                return Answer(self._question(node), _YES)
+                return Answer(self._question(node), YES)
 
     def _properties(self, node: ast.expr) -> tuple[str, ...]:
         """The properties that an expression can be."""
@@ -192,7 +189,7 @@ class Conditions:
             question = Question(self.text(left), self.text(left.value), self._properties(left))
             held = Answer(question, frozenset(map(str, values)))
         elif kind in {"int", "float"} and type(operator) in _ORDER and isinstance(values[0], (int, float)):
-            held = Answer(self._question(left, f"{_ORDER[type(operator)]} {values[0]!r}"), _YES)
+            held = Answer(self._question(left, f"{_ORDER[type(operator)]} {values[0]!r}"), YES)
         else:
             return self._not_understood(node)
         return negated(held) if is_not else held
@@ -204,7 +201,7 @@ class Conditions:
         return source if source and held and self.text(source) == held.text else node
 
     def _not_understood(self, node: ast.expr) -> Formula:
-        return Answer(Question(self.text(node)), _YES)
+        return Answer(Question(self.text(node)), YES)
 
     def _values(self, node: ast.expr) -> list[object]:
         """The literals that an expression is, or that it holds."""

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
 TRUE_VALUE = "True"
+YES = frozenset({TRUE_VALUE})
 _MOST_ANSWERS = 1 << 12  # combinations of answers that are looked at together
 _MOST_PARTS = 300  # of a formula
 _MOST_NEEDS = 2  # of one clause that is not of switches alone
@@ -186,7 +187,7 @@ def _follow(
     switches = [question for question in shown if not question.relation and values[question] == {TRUE_VALUE}]
     for number in _SWITCHES if len(switches) <= _MOST_SWITCHES else ():
         clauses += [
-            frozenset(_need(told[question], question, (frozenset({TRUE_VALUE}), True)) for question in group)
+            frozenset(_need(told[question], question, (YES, True)) for question in group)
             for group in combinations(switches, number)
             if table.has_one(group, rows)
         ]

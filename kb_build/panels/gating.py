@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from kb_build.flow.blender.facts import DISCRIMINANTS
 from kb_build.panels.formulas import All, Answer, Clause, Clauses, Need, Question, common, consequences
 from kb_build.symbols.api_names import TYPES
-from kb_build.symbols.records import READ_ONLY
+from kb_build.symbols.flag_names import READ_ONLY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

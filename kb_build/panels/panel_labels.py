@@ -10,7 +10,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.syntax.trees import walk
-from kb_build.panels.drawing import SHOWS, shown_property
+from kb_build.panels.layout_calls import SHOWS, shown_property
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -6,6 +6,7 @@ from array import array
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import idf, stem, terms
+from kb_build.symbols.api_names import REMOVING_VERBS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -14,7 +15,8 @@ if TYPE_CHECKING:
     from kb_build.recipes.tables import Recipe
 
 # Who does not say one of these does not want it: they count more than they are rare.
-_UNDOING = ("clear", "delete", "detach", "remove", "rid", "strip", "unassign", "unlink")
+# Recipes that free memory, or are of free things, undo nothing.
+_UNDOING = (REMOVING_VERBS - {"free"}) | {"detach", "rid", "strip"}
 # Each stands for any other of these: they count less.
 _MAKING = (
     "add",

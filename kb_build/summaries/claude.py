@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
     from anthropic.types.messages.batch_create_params import Request
 
-    from kb_build.symbols.records import Page
+    from kb_build.pages.page import Page
 
 MIN_CHARS = 120
 """A page with less text than this is not worth a question: it is its own summary."""

@@ -32,7 +32,7 @@ from kb_build.summaries.types import PageSummary, summary_key
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator, Mapping, Sequence
 
-    from kb_build.symbols.records import Page, Section
+    from kb_build.pages.page import Page, Section
 
 EXTRACTIVE_VERSION = "extractive-1"
 MODEL = "extractive"

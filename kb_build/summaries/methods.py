@@ -18,8 +18,8 @@ from kb_build.summaries.types import ClaudeOptions, Method, Progress, SummaryRep
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from kb_build.pages.page import Page
     from kb_build.summaries.store import SummaryStore
-    from kb_build.symbols.records import Page
 
 
 def summarise(

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from anthropic.types import DocumentBlockParam, OutputConfigParam
     from anthropic.types.message_create_params import MessageCreateParamsNonStreaming
 
-    from kb_build.symbols.records import Page
+    from kb_build.pages.page import Page
 
 PROMPT_VERSION = "page-2"
 

@@ -17,7 +17,7 @@ from kb_build.summaries.types import PageSummary, summary_key
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from kb_build.symbols.records import Page
+    from kb_build.pages.page import Page
 
 
 @dataclass(frozen=True, slots=True)

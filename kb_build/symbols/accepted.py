@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.records import ACCEPTS
+from kb_build.symbols.flag_names import ACCEPTS
 
 if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol

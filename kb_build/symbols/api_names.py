@@ -19,6 +19,14 @@ BLEND_DATA = f"{TYPES}BlendData"
 # What lets a Blender without a window draw, since 5.2.
 BEGIN_DRAWING = "gpu.init"
 
+# The verbs by which functions and operators are called that take something away.
+REMOVING_VERBS = frozenset({"clear", "delete", "discard", "free", "remove", "unassign", "unlink"})
+
+# What every operator of ``bpy.ops`` has as an attribute.
+OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
+# What makes a socket of a group, and an input of the modifier that runs it.
+NEW_SOCKET = f"{TYPES}NodeTreeInterface.new_socket"
+
 # Where a node has its sockets.
 SIDES = ("inputs", "outputs")
 

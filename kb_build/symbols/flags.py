@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
-from kb_build.symbols.needs import OperatorNeeds
-from kb_build.symbols.records import (
+from kb_build.symbols.flag_names import (
     ALSO,
     ANY,
     AREAS,
@@ -21,6 +20,7 @@ from kb_build.symbols.records import (
     READ_ONLY,
     THEN,
 )
+from kb_build.symbols.needs import OperatorNeeds
 from kb_build.symbols.unlisted import STAND_INS
 
 if TYPE_CHECKING:

@@ -9,6 +9,32 @@ from typing import TYPE_CHECKING, cast
 
 from kb_build.schema import TEST_OFF, TEST_ON
 from kb_build.symbols.accepted import fatal_kinds
+from kb_build.symbols.flag_names import (
+    ALSO,
+    ANY,
+    EMPTY,
+    ENDS_BEFORE,
+    ENDS_EVERY_TIME,
+    ENDS_IN_MODULE,
+    ENDS_LEFT_OUT,
+    ENDS_ON_NONE,
+    ENDS_WINDOWLESS,
+    ENDS_WITHOUT,
+    ENUM_FLAG,
+    FILLED_ON,
+    FREE_ON,
+    GIVEN,
+    LOCKED_ON,
+    LOCKED_WITH,
+    NAME_WHEN_SHOWN,
+    NEVER_BY_IDENTIFIER,
+    NONE_ON_SOME,
+    NOT_ENOUGH,
+    NOT_KNOWN,
+    REFUSED_ALL,
+    SHOWN_WHEN,
+    UNSET_BY,
+)
 from kb_build.symbols.flags import (
     empty_when_new,
     fillers,
@@ -22,36 +48,9 @@ from kb_build.symbols.flags import (
     operator_areas,
     usual_default,
 )
+from kb_build.symbols.paths import last_name
 from kb_build.symbols.python_values import is_new_list
-from kb_build.symbols.records import (
-    ALSO,
-    ANY,
-    EMPTY,
-    ENDS_BEFORE,
-    ENDS_EVERY_TIME,
-    ENDS_IN_MODULE,
-    ENDS_LEFT_OUT,
-    ENDS_ON_NONE,
-    ENDS_WINDOWLESS,
-    ENDS_WITHOUT,
-    ENUM_FLAG,
-    FACTORY,
-    FILLED_ON,
-    FREE_ON,
-    GIVEN,
-    LOCKED_ON,
-    LOCKED_WITH,
-    NAME_WHEN_SHOWN,
-    NEVER_BY_IDENTIFIER,
-    NONE_ON_SOME,
-    NOT_ENOUGH,
-    NOT_KNOWN,
-    REFUSED_ALL,
-    SHOWN_WHEN,
-    STARTUP,
-    UNSET_BY,
-    last_name,
-)
+from kb_build.symbols.records import FACTORY, STARTUP
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.records import ENUM_FLAG
+from kb_build.symbols.flag_names import ENUM_FLAG
 
 if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol

@@ -21,8 +21,9 @@ from kb_build.usage.examples import SymbolUsage
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 
+    from kb_build.pages.page import Page
     from kb_build.panels.panel_labels import PanelLabel
-    from kb_build.symbols.records import Page, SettingCondition, Symbol
+    from kb_build.symbols.records import SettingCondition, Symbol
     from kb_build.usage.examples import Uses
 
     Row = tuple[object, ...]
@@ -120,7 +121,7 @@ def symbol_names(symbol: Symbol) -> Iterator[tuple[str, int, str]]:
     if symbol.kind == "operator":
         yield key(symbol.target), FORM_SHORT, symbol.path
         yield key(f"bpy.types.{symbol.target}"), FORM_SHORT, symbol.path
-    if symbol.group in {"ui", "operator"} or symbol.name.startswith("bl_rna_get_subclass"):
+    if symbol.is_of_interface or symbol.is_class_lookup:
         return
     yield key(symbol.name), FORM_NAME, symbol.path
     if symbol.kind == "socket":

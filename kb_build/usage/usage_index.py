@@ -20,7 +20,8 @@ from kb_build.flow.analysis import analyse
 from kb_build.flow.blender.api import Api
 from kb_build.flow.blender.symbols import SymbolList
 from kb_build.panels import gating, panel_labels
-from kb_build.panels.drawing import places_in, shows_something
+from kb_build.panels.drawn_places import places_in
+from kb_build.panels.layout_calls import shows_something
 from kb_build.panels.panel_labels import PanelClass, ScriptPanels, ShownProperty, panels_in
 from kb_build.usage.examples import Example, Uses, analysed_uses, uses_in
 from kb_build.usage.scripts import TEMPLATES, read_script
@@ -32,7 +33,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Sequence
     from pathlib import Path
 
-    from kb_build.symbols.records import Page, Symbol
+    from kb_build.pages.page import Page
+    from kb_build.symbols.records import Symbol
     from kb_build.usage.scripts import Script
 
 _KEPT = 12

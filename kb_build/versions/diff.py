@@ -7,16 +7,13 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 from kb_build.blender.call_texts import python_value
-from kb_build.symbols.records import READ_ONLY
+from kb_build.symbols.flag_names import READ_ONLY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_build.blender.extract_reader import Extract
     from kb_build.symbols.records import EnumItem, Parameter, Symbol
-
-_REPEATED = ".bl_rna_get_subclass"
-_NOT_DATA = frozenset({"ui", "operator"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +85,7 @@ def diff(old: Extract, new: Extract, *, interface: bool = False) -> Diff:
 
 
 def _compared(symbols: Sequence[Symbol], interface: bool) -> dict[str, Symbol]:
-    hidden = {symbol.path for symbol in symbols if symbol.group in _NOT_DATA and not interface}
+    hidden = {symbol.path for symbol in symbols if symbol.is_of_interface and not interface}
     return {
         symbol.path: symbol
         for symbol in symbols
@@ -97,7 +94,7 @@ def _compared(symbols: Sequence[Symbol], interface: bool) -> dict[str, Symbol]:
 
 
 def _is_repeated(symbol: Symbol) -> bool:
-    return _REPEATED in symbol.path or bool(symbol.same_as)
+    return symbol.is_class_lookup or bool(symbol.same_as)
 
 
 def _entries(symbols: Iterable[Symbol]) -> tuple[DiffEntry, ...]:

@@ -12,7 +12,8 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.records import BARE_DATA, STUB, Deprecation
+from kb_build.symbols.flag_names import BARE_DATA, STUB
+from kb_build.symbols.records import Deprecation
 from simworlds.releases import version_key
 
 if TYPE_CHECKING:

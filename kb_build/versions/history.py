@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 HISTORY_FILE = Path(__file__).resolve().parents[2] / "corpora" / "history" / "api.csv.gz"
 COLUMNS = ["path", "items_of"]  # and one for each version
 SHARED = "rna_enum_"  # how Blender names enumerations that many properties have
+# What everything stands in: no history has it.
+TOP = frozenset({"", "bpy.types", "bpy.ops", "bpy.context"})
 _LACKS, _HAS, _UNKNOWN = "01?"
 
 
@@ -40,7 +42,7 @@ def history_paths(extract: Extract) -> Iterator[str]:
     What every class repeats from its base (the reference lists it on each) is as old as the class: left out.
     """
     for symbol in extract.symbols:
-        if symbol.same_as or ".bl_rna_get_subclass" in symbol.path:
+        if symbol.same_as or symbol.is_class_lookup:
             continue
         yield from paths_of(symbol)
 

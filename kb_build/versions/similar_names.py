@@ -19,6 +19,7 @@ from kb_build.index.analysis import key, stem, words
 from kb_build.symbols.api_names import OPERATORS, STRUCT, TYPES, interface_part
 from kb_build.symbols.paths import split_path
 from kb_build.versions.feature_index import Bag, FeatureIndex, Mentions
+from kb_build.versions.history import TOP
 from simworlds.releases import minor_of
 
 if TYPE_CHECKING:
@@ -59,7 +60,6 @@ _MENTIONED = 0.9  # unless its own text says so much of the missing name
 _RIVAL = 0.7  # of the best, from which on a second one may be an owner's replacement too
 _HOLDER = 0.25
 _MOST_ITEMS = 300  # more than in any enumeration but that of the icons
-_ROOTS = frozenset({"", "bpy.types", "bpy.ops", "bpy.context"})
 _FEW_HOLDERS = 2
 _OF_MODULES = 0.2
 _THEME = "bpy.types.Theme"  # colours of the interface stand for nothing but each other
@@ -68,7 +68,6 @@ _ALIKE = 0.5
 _LEAST_INSIDE = 3
 _LEAST_PAIRS = 5
 _LEAST_SHARE = 0.5
-_NOT_DATA = frozenset({"ui", "operator"})
 
 _LONE_CAPITAL = re.compile(r"(?<![A-Z])[A-Z]{2}(?=[a-z])(?!s\b)")
 
@@ -361,10 +360,10 @@ class SimilarNames:
 
 def _is_candidate(symbol: Symbol, by_path: Mapping[str, Symbol]) -> bool:
     """Whether a symbol can be a replacement: data API, operators, sockets; no interface, no repeated members."""
-    if symbol.kind == "enum" or symbol.group in _NOT_DATA or ".bl_rna_get_subclass" in symbol.path:
+    if symbol.kind == "enum" or symbol.is_of_interface or symbol.is_class_lookup:
         return False
     owner = by_path.get(symbol.owner)
-    if owner is not None and owner.group in _NOT_DATA:
+    if owner is not None and owner.is_of_interface:
         return False
     return not symbol.same_as
 
@@ -396,6 +395,6 @@ def find_similar_names(
         if not span.gone or span.path in besides or not has_similar(span.path):
             continue
         above, _, _ = split_path(span.path)
-        if above in _ROOTS or history.exists(above, version):
+        if above in TOP or history.exists(above, version):
             for target, score in finder.near(span.path):
                 yield span.path, target, score

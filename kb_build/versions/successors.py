@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING
 
 from kb_build.errors import StoreError
 from kb_build.flow.blender.facts import LOST_MODULES
-from kb_build.symbols.known_prefixes import KnownPrefixes
+from kb_build.known_prefixes import KnownPrefixes
 from kb_build.symbols.paths import joined_path, split_path
+from kb_build.versions.history import TOP
 from simworlds.releases import version_key
 
 if TYPE_CHECKING:
@@ -29,7 +30,6 @@ SUCCESSORS_FILE = Path(__file__).resolve().parents[2] / "corpora" / "history" / 
 COLUMNS = ["old", "new", "how", "version", "source"]
 _OTHERWISE = "It is used in another way."
 _HELD_BY_NAME = re.compile(r"""\.get\(['"]""")  # how something is asked for that others are kept beside
-_TOP = frozenset({"", "bpy.types", "bpy.ops", "bpy.context"})
 _STEPS = 5  # names that were renamed more often than that are none
 
 
@@ -223,7 +223,7 @@ class Successors:
             return True
         owner = split_path(new)[0]
         both = self._history.mask(row.old) & self._history.mask(new)
-        elsewhere = owner not in _TOP and owner != split_path(row.old)[0] and self._exists(owner)
+        elsewhere = owner not in TOP and owner != split_path(row.old)[0] and self._exists(owner)
         return not _HELD_BY_NAME.search(row.how) and not (both and elsewhere)
 
     def _with_owner(self, path: str, step: int) -> Iterator[Succession]:

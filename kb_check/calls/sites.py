@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.values.types import ClassObject, Function, NoneValue, Operator, members
 from kb_build.symbols.api_names import TYPES
-from kb_build.symbols.records import RETURNS_NONE
+from kb_build.symbols.flag_names import RETURNS_NONE
 from kb_check.findings import Edit, Span
 from kb_check.script import once_for_each, once_per_script
 from kb_check.syntax.bindings import bindings

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 from kb_build.flow.syntax.trees import walk
 from kb_build.flow.values.types import UNKNOWN, Module, Plain, members
 from kb_build.symbols.api_names import OPERATORS
+from kb_build.symbols.flag_names import READ_ONLY
 from kb_build.symbols.paths import item_of, split_path
-from kb_build.symbols.records import READ_ONLY
 from kb_check.findings import Edit, Fix, Span
 from kb_check.names.uses import are_refused
 from kb_check.script import once_per_script

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.values.types import Instance, members
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flag_names import SHOWN_WHEN
 from kb_build.symbols.flags import usual_default
-from kb_build.symbols.records import SHOWN_WHEN
 from kb_check.nodes.settings import setting_of
 from kb_check.nodes.socket_modes import showing, ways_of_showing
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import ID
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flag_names import HIDDEN, SHOWN_WHEN
 from kb_build.symbols.lines import shown_when
-from kb_build.symbols.records import HIDDEN, SHOWN_WHEN
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.records import PAIRS, WHEN_PAIRED
+from kb_build.symbols.flag_names import PAIRS, WHEN_PAIRED
 from kb_check.script import once_per_script
 from kb_check.syntax.bodies import statement_of
 from kb_check.syntax.words import attributes, named_words

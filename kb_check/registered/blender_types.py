@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES as T
-from kb_build.symbols.records import MUST_HAVE
+from kb_build.symbols.flag_names import MUST_HAVE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

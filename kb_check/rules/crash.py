@@ -29,9 +29,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.values.types import NONE
-from kb_build.symbols.lines import IN_MODULE
-from kb_build.symbols.paths import last_name
-from kb_build.symbols.records import (
+from kb_build.symbols.flag_names import (
     ENDS_BEFORE,
     ENDS_EVERY_TIME,
     ENDS_IN_MODULE,
@@ -41,6 +39,8 @@ from kb_build.symbols.records import (
     ENDS_WITHOUT,
     UNSET_BY,
 )
+from kb_build.symbols.lines import IN_MODULE
+from kb_build.symbols.paths import last_name
 from kb_check.calls.resolved import called_operators, callee_path
 from kb_check.calls.sites import CallSite, calls
 from kb_check.findings import Edit, Finding, Fix

@@ -22,8 +22,8 @@ from kb_build.flow.values.types import Instance
 from kb_build.index.analysis import stem, words
 from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flag_names import EMPTY
 from kb_build.symbols.paths import last_name
-from kb_build.symbols.records import EMPTY
 from kb_check.calls.resolved import callee_path, member_path
 from kb_check.findings import Finding
 from kb_check.modes.edit_bones import edited_outside

@@ -30,9 +30,9 @@ from kb_build.flow.values.types import Instance
 from kb_build.index.analysis import stem, words
 from kb_build.symbols.api_names import ID, OBJECT, OPERATORS
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flag_names import READ_ONLY
 from kb_build.symbols.flags import empty_when_new, fillers
 from kb_build.symbols.paths import last_name
-from kb_build.symbols.records import READ_ONLY
 from kb_check.calls.not_ensured import ensuring, not_ensured
 from kb_check.calls.resolved import called_operators, callee_path, member_path
 from kb_check.findings import Finding

@@ -38,8 +38,8 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.flag_names import HIDDEN
 from kb_build.symbols.lines import shown_when
-from kb_build.symbols.records import HIDDEN
 from kb_check.findings import Finding
 from kb_check.nodes.hidden_links import hidden_link
 from kb_check.nodes.shown_sockets import hidden_by_settings, index_beyond

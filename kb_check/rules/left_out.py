@@ -32,8 +32,8 @@ from kb_build.flow.values.types import Instance
 from kb_build.symbols.accepted import ITSELF, TAKES, accepted, accepted_text, noun
 from kb_build.symbols.api_names import OBJECT
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flag_names import NAMES_PART
 from kb_build.symbols.object_data import OBJECT_DATA, data_class
-from kb_build.symbols.records import NAMES_PART
 from kb_check.calls.resolved import callee_path
 from kb_check.findings import Finding
 from kb_check.rule import Rule

@@ -31,8 +31,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import NODE
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flag_names import NODE_TYPE, READ_ONLY
 from kb_build.symbols.paths import item_of
-from kb_build.symbols.records import NODE_TYPE, READ_ONLY
 from kb_check.findings import Finding, Fix
 from kb_check.names.lacking import lacking_finding
 from kb_check.rule import Rule

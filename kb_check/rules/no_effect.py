@@ -21,8 +21,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.values.types import Builtin, Function, Instance, Plain, Sequence
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flag_names import READ_ONLY
 from kb_build.symbols.python_values import on_changing
-from kb_build.symbols.records import READ_ONLY
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
 from kb_check.syntax.words import named_words

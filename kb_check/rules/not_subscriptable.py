@@ -44,7 +44,7 @@ from kb_build.flow.values.types import (
 )
 from kb_build.symbols.api_names import BLEND_DATA, CONTEXT, GROUPS, SIDES, STRUCT
 from kb_build.symbols.api_names import TYPES as T
-from kb_build.symbols.records import NAMES_ITEMS
+from kb_build.symbols.flag_names import NAMES_ITEMS
 from kb_check.calls.resolved import callee_path
 from kb_check.calls.sites import nothing_from
 from kb_check.findings import Edit, Finding, Fix

@@ -25,8 +25,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.values.types import UNKNOWN, Instance, LocalInstance, members
 from kb_build.symbols.api_names import HANDLERS, TYPES
+from kb_build.symbols.flag_names import FREE_ON, READ_ONLY
 from kb_build.symbols.flags import freed_by, is_locked
-from kb_build.symbols.records import FREE_ON, READ_ONLY
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.names.lacking import data_class_that_had, lacking_finding
 from kb_check.rule import Rule

@@ -32,9 +32,9 @@ from typing import TYPE_CHECKING
 from kb_build.flow.values.types import UNKNOWN, ClassObject, Instance, LocalClass, members
 from kb_build.symbols.api_names import NODE, STRUCT
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flag_names import PAIRS
 from kb_build.symbols.lines import with_article
 from kb_build.symbols.paths import last_name
-from kb_build.symbols.records import PAIRS
 from kb_check.calls.repeated import follows
 from kb_check.calls.resolved import callee_path
 from kb_check.calls.sites import CallSite, calls

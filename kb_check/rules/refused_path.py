@@ -30,8 +30,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.symbols.api_names import ID, OBJECT
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flag_names import ANIMATABLE
 from kb_build.symbols.paths import last_name
-from kb_build.symbols.records import ANIMATABLE
 from kb_check.calls.sites import calls
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule

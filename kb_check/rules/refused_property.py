@@ -26,7 +26,8 @@ from typing import TYPE_CHECKING
 from kb_build.flow.values.types import ClassObject
 from kb_build.symbols.api_names import ID
 from kb_build.symbols.api_names import TYPES as T
-from kb_build.symbols.records import RNA_TYPES, RUNTIME
+from kb_build.symbols.flag_names import RUNTIME
+from kb_build.symbols.records import RNA_TYPES
 from kb_check.calls.resolved import callee_path
 from kb_check.calls.sites import calls
 from kb_check.findings import Finding, Fix

@@ -34,9 +34,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.index.analysis import words
 from kb_build.symbols.api_names import ID, NODE, OPERATORS
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flag_names import READ_ONLY
 from kb_build.symbols.flags import usual_default
 from kb_build.symbols.paths import last_name
-from kb_build.symbols.records import READ_ONLY
 from kb_build.symbols.taken import NEVER, Setting
 from kb_check.calls.resolved import called_operators, callee_path, member_path
 from kb_check.calls.sites import calls_not_ready_for

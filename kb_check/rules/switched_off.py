@@ -27,10 +27,10 @@ from operator import attrgetter
 from typing import TYPE_CHECKING
 
 from kb_build.schema import TEST_ON
+from kb_build.symbols.flag_names import COMPARED
 from kb_build.symbols.flags import usual_default
 from kb_build.symbols.lines import is_contrary
 from kb_build.symbols.paths import last_name
-from kb_build.symbols.records import COMPARED
 from kb_check.findings import Finding
 from kb_check.rule import Rule
 from kb_check.running.out_of_sight import computes_names

@@ -130,7 +130,7 @@ def _socket_class(script: Script, name: str) -> str:
     if not name.isidentifier() or name.startswith(_SOCKET):
         return ""
     return last_name(
-        cls if script.api.is_class(f"{T}{cls}") else script.api.class_of_value(f"{T}{_SOCKET}", name)
+        cls if script.api.is_class(f"{T}{cls}") else script.api.literals.class_of_value(f"{T}{_SOCKET}", name)
     )
 
 

@@ -34,8 +34,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.values.types import Instance, Resolution
 from kb_build.symbols.api_names import SIDES
+from kb_build.symbols.flag_names import NEVER_BY_IDENTIFIER, WHEN_PAIRED
 from kb_build.symbols.lines import subscripts_text
-from kb_build.symbols.records import NEVER_BY_IDENTIFIER, WHEN_PAIRED
 from kb_check.findings import Finding
 from kb_check.names.lacking import lacking_finding
 from kb_check.nodes.group_inputs import input_now

@@ -189,7 +189,7 @@ def _of_trees(script: Script) -> Iterator[Finding]:
             continue
         if script.api.is_class(f"{T}{value}") or value in script.package.identifiers:
             continue
-        meant = script.api.class_of_value(f"{T}NodeTree", value)
+        meant = script.api.literals.class_of_value(f"{T}NodeTree", value)
         is_built_in = value.startswith(NODE_FAMILIES) or _TREE.fullmatch(value)
         if not (meant or is_built_in) or script.package.has(("bpy.types",), value):
             continue

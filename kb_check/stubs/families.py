@@ -50,7 +50,7 @@ class Families:
 
     def _is_data(self, cls: str) -> bool:
         symbol = self._api.symbols.symbol(cls)
-        return symbol is not None and symbol.group not in {"ui", "operator"}
+        return symbol is not None and not symbol.is_of_interface
 
     def members(self, cls: str) -> tuple[str, ...]:
         """The classes that a family derives from: those below ``cls`` that nothing derives from."""

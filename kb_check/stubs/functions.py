@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.blender.facts import DERIVED_BY_SCRIPTS, SAME_CLASS
 from kb_build.symbols.api_names import TYPES as T
-from kb_build.symbols.records import OF_CLASS, STATIC
+from kb_build.symbols.flag_names import OF_CLASS, STATIC
 from kb_check.stubs.annotations import ANY, MAYBE_NONE, RNA_TYPES
 from kb_check.stubs.names import docstring, is_writable
 from kb_serve.signatures import signature_arguments

@@ -61,7 +61,7 @@ class Overloads:
             values = tuple(path.removeprefix(T) for path in self._api.descendants(of))
         found: dict[str, list[str]] = {}
         for value in values:
-            cls = self._api.class_of_value(base, value)
+            cls = self._api.literals.class_of_value(base, value)
             if cls:
                 found.setdefault(cls, []).append(value)
         return (parameter, found) if found else None

@@ -12,7 +12,8 @@ from kb_build.flow.blender.api import ARRAY
 from kb_build.flow.blender.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES
 from kb_build.flow.values.types import Instance, Sequence
 from kb_build.symbols.api_names import TYPES as T
-from kb_build.symbols.records import NEVER_NONE, READ_ONLY, RNA_TYPES
+from kb_build.symbols.flag_names import NEVER_NONE, READ_ONLY
+from kb_build.symbols.records import RNA_TYPES
 from kb_check.stubs.annotations import ANY, ITEMS, MAYBE_NONE
 from kb_check.stubs.families import OBJECT_DATA_FAMILY
 from kb_check.stubs.names import docstring

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.blender.facts import NODES_WITH_SOCKETS_OF_THEIR_OWN
 from kb_build.flow.values.types import Instance
 from kb_build.symbols.api_names import TYPES as T
-from kb_build.symbols.records import NEVER_BY_IDENTIFIER
+from kb_build.symbols.flag_names import NEVER_BY_IDENTIFIER
 
 if TYPE_CHECKING:
     from kb_build.flow.blender.api import Api

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.blender.api import ARRAY
 from kb_build.flow.blender.facts import ELEMENT
 from kb_build.flow.values.types import FLOAT, UNKNOWN, Instance, Plain, Tuple, members
-from kb_build.symbols.records import READ_ONLY
+from kb_build.symbols.flag_names import READ_ONLY
 from kb_check.running.raised import REFUSES
 from kb_check.running.tried import is_tried
 from kb_check.values.conversions import kind_misfit

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 from kb_build.flow.values.types import NONE, UNKNOWN, Collection, Instance, LocalInstance, members
 from kb_build.symbols.api_names import STRUCT
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flag_names import ENUM_FLAG, NEVER_NONE, READ_ONLY, STOPS, UNBOUNDED
 from kb_build.symbols.paths import plain_path
-from kb_build.symbols.records import ENUM_FLAG, NEVER_NONE, READ_ONLY, SCALAR_TYPES, STOPS, UNBOUNDED
+from kb_build.symbols.records import SCALAR_TYPES
 from kb_check.calls.sites import calls_not_ready_for
 from kb_check.nodes.shown_sockets import socket_classes
 from kb_check.registered.classes import own_classes

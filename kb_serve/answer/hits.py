@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.records import PAGE_SOURCES
+from kb_build.pages.page import PAGE_SOURCES
 from simworlds.schemas.value_class import value_class
 
 if TYPE_CHECKING:

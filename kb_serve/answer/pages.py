@@ -13,7 +13,7 @@ from kb_serve.answer.budget import AnswerBlock
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from kb_build.symbols.records import Section
+    from kb_build.pages.page import Section
     from kb_serve.lookups.records import PageEntry
     from kb_serve.reader import BaseReader
 

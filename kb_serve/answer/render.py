@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import SIDES, STRUCT, TYPES
+from kb_build.symbols.flag_names import BARE_DATA, PAIRS, STATIC
 from kb_build.symbols.flags import is_stand_in
 from kb_build.symbols.lines import fatal_lines, mode_needed, poll_line, version_meant, written
-from kb_build.symbols.records import BARE_DATA, PAIRS, STATIC
 from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.facts.arguments import VALUES_OF, argument_lines, arguments, operator_call
 from kb_serve.answer.facts.asked_values import ASKED_NOTHING

@@ -6,7 +6,7 @@ import json
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.records import Page, page_from_json
+from kb_build.pages.page import Page, page_from_json
 from kb_serve.lookups.kept_rows import KeptRows, grouped
 from kb_serve.lookups.records import PAGE_COLUMNS, PageEntry
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.api_names import REMOVING_VERBS
+
 if TYPE_CHECKING:
     from collections.abc import Set
 
@@ -19,9 +21,10 @@ NODE_WORDS = frozenset(
     """compositing compositor geometry material materials node nodes nodetree shader shaders socket
     sockets""".split()  # noqa: SIM905
 )
-REMOVAL_WORDS = frozenset(
-    """away clean clear cut delete deleted deleting detach discard drop empty erase forget free get hide kill lose off
-    purge remove removed removes removing reset rid unassign unbake undo unlink wipe without""".split()  # noqa: SIM905
+# By these one asks for what takes something away, besides the verbs of its name.
+REMOVAL_WORDS = REMOVING_VERBS | frozenset(
+    """away clean cut deleted deleting detach drop empty erase forget get hide kill lose off purge removed removes
+    removing reset rid unbake undo wipe without""".split()  # noqa: SIM905
 )
 
 

@@ -14,7 +14,7 @@ from kb_build.index.analysis import terms as terms_of
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from kb_build.symbols.records import Page, Section
+    from kb_build.pages.page import Page, Section
     from kb_serve.rank.scoring import Concept
 
 _IN_HEADING, _IN_LABEL = 3.0, 2.0  # what a word counts there more than in the text

@@ -51,6 +51,7 @@ BAD_KEYWORD = re.compile(
     r"|['\"](?P<invalid>\w+)['\"] is an invalid keyword argument for (?:this function|(?P<of>[\w.]++)\(\))"
     r"|(?<![\w.])(?P<method>\w++(?:\.\w++)++)\(\): was called with invalid keyword argument\(s\) \((?P<several>[^)]*)\)"
 )
+OF_OPERATORS = "to operator properties"  # what arguments of operators are converted to
 IN_FUNCTION = re.compile(r"(?<![\w.])(?P<method>\w++(?:\.\w++)*+)\(\): error with (?:keyword )?argument")
 _ARGUMENT = r"error with (?:keyword )?argument (?:\d+, )?\"(?P<name>\w+)\" -"
 IN_ARGUMENT = re.compile(_ARGUMENT)

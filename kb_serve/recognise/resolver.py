@@ -9,7 +9,17 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
-from kb_build.symbols.api_names import COLLECTION, GROUPS, NODE, OBJECT, OPERATORS, SIDES, STRUCT, TYPES
+from kb_build.symbols.api_names import (
+    COLLECTION,
+    GROUPS,
+    NODE,
+    OBJECT,
+    OPERATOR_METHODS,
+    OPERATORS,
+    SIDES,
+    STRUCT,
+    TYPES,
+)
 from kb_build.symbols.paths import is_socket, last_name
 from kb_build.symbols.python_values import METHODS, python_class
 from kb_serve.recognise.chains.chain_starts import ChainStarts
@@ -48,7 +58,6 @@ _TOLD = 0.2  # fit of the likeliest class of a variable whose name tells nothing
 _NAMED = 0.5  # … of a class that a variable's name tells
 _MOST_TRIED = 12  # readings of which it is asked whether they take a value
 _MAX_BRANCHES = 60
-_OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
 
 
 @value_class
@@ -244,7 +253,7 @@ class Resolver:
         if name in _RNA and value.cls.startswith(TYPES):
             yield ChainValue(_STRUCT_OF_ALL, _STRUCT_OF_ALL)
             return
-        if name in _OPERATOR_METHODS and value.symbol.startswith(OPERATORS):
+        if name in OPERATOR_METHODS and value.symbol.startswith(OPERATORS):
             yield value
             return
         if value.cls.startswith(OPERATORS) and self._has_parameter(value.cls, name):

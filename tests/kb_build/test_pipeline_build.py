@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from kb_build.errors import SourceError
+from kb_build.pages.page import page_from_json
 from kb_build.pipeline import BuildOptions, build
 from kb_build.schema import unpack
-from kb_build.symbols.records import page_from_json, symbol_from_json
+from kb_build.symbols.records import symbol_from_json
 
 if TYPE_CHECKING:
     from pathlib import Path

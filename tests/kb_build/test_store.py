@@ -12,11 +12,12 @@ import pytest
 
 from kb_build.errors import StoreError
 from kb_build.index.analysis import key, short_path
+from kb_build.pages.page import Page, Section
 from kb_build.schema import APPLICATION_ID, SCHEMA_VERSION, pack, unpack
 from kb_build.store import Contents, write_base
 from kb_build.summaries.functions import with_function_summaries
 from kb_build.summaries.types import PageSummary
-from kb_build.symbols.records import Deprecation, EnumItem, Link, Page, Parameter, Section, Symbol
+from kb_build.symbols.records import Deprecation, EnumItem, Link, Parameter, Symbol
 from kb_build.versions.removed_symbols import RemovedSymbols
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.lookups.records import Successor

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 import pytest
 from running import COMMAND, REPO, environment, run_here
 
-from kb_build.symbols.records import page_from_json, symbol_from_json
+from kb_build.pages.page import page_from_json
+from kb_build.symbols.records import symbol_from_json
 from kb_serve.in_use import other_in_use
 from kb_serve.knowledge_base import KnowledgeBase
 from simworlds.settings import version_of_base

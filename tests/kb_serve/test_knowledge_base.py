@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import paths
 
-from kb_build.symbols.records import Page, Symbol
+from kb_build.pages.page import Page
+from kb_build.symbols.records import Symbol
 from kb_serve.errors import BadQuery, BaseMissing, KBServeError
 from kb_serve.knowledge_base import KnowledgeBase
 

@@ -1,16 +1,13 @@
-"""Blender's API as types: what members are, what calls return, which classes literals mean."""
+"""Blender's API as types: what members are, and what calls return."""
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
+from kb_build.flow.blender.classes import Classes
 from kb_build.flow.blender.facts import (
-    CALLED,
-    CLASS_OF_VALUE,
-    DISCRIMINANTS,
     ELEMENT,
     ELEMENTS,
     LAYER_ITEM,
@@ -23,6 +20,7 @@ from kb_build.flow.blender.facts import (
     SAME_CLASS,
     SAME_TYPE,
 )
+from kb_build.flow.blender.literal_classes import LiteralClasses
 from kb_build.flow.blender.type_text import read_type
 from kb_build.flow.values.types import (
     BOOL,
@@ -46,17 +44,18 @@ from kb_build.flow.values.types import (
     members,
     union,
 )
-from kb_build.symbols.api_names import COLLECTION, GROUPS, ID, NODE, OBJECT, OPERATORS, STRUCT
+from kb_build.symbols.api_names import COLLECTION, GROUPS, ID, OBJECT, OPERATOR_METHODS, OPERATORS, STRUCT
 from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flag_names import ENUM_FLAG
 from kb_build.symbols.math_classes import math_class
 from kb_build.symbols.object_data import OBJECT_DATA, OF_EMPTIES, data_class
-from kb_build.symbols.paths import argument_of, is_socket, plain_path
+from kb_build.symbols.paths import argument_of, plain_path
 from kb_build.symbols.python_values import is_new_list
-from kb_build.symbols.records import ENUM_FLAG, NODE_TYPE, READ_ONLY
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kb_build.flow.blender.former_names import FormerNames
     from kb_build.flow.blender.symbols import Symbols
     from kb_build.symbols.records import Parameter, Symbol
 
@@ -65,15 +64,7 @@ _DATA = f"{OBJECT}.data"
 _ROOTS = {"bpy.data": f"{T}BlendData", "bpy.context": f"{T}Context"}
 _SCALARS: dict[str, Type] = {"boolean": BOOL, "int": INT, "float": FLOAT, "string": STR}
 MENU_SOCKET = f"{T}NodeSocketMenu"
-_INTERFACE = f"{T}NodeTreeInterfaceSocket"
-_MOST_CLASSES = 2_000
-_KEY = re.compile(r'\["(?P<name>[^"]+)"\]$')
-_WORD = re.compile(r"[A-Z][a-z0-9]*$")
-_AROUND = re.compile(r"([A-Z][a-z0-9]*)([A-Z][a-z0-9]*)")
-_SIMPLE = re.compile(r"[^a-z0-9]")
-_MAKER = "new_"
 _OF_CLASS = "_OT_"
-_OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
 
 
 def part_of_macro(parameter: Parameter) -> str:
@@ -97,135 +88,31 @@ class Member:
     type: Type
 
 
-class FormerNames(Protocol):
-    """What became of members that other Blenders have."""
-
-    def had(self, owner: str, name: str) -> bool:
-        """Whether a class or module of another Blender has a member that it lacks in this one."""
-        ...
-
-    def had_value(self, path: str, value: str) -> bool:
-        """Whether a property of another Blender has a value that it lacks in this one."""
-        ...
-
-    def still_works(self, path: str) -> str:
-        """The symbol that one gets by a former name that this Blender still takes; empty where it does not."""
-        ...
-
-    def successor(self, owner: str, name: str) -> str:
-        """The path that surely takes the place of such a member with no other change; empty for none."""
-        ...
-
-
-class Api:
+class Api(Classes):
     """The types of one Blender's API. What is there is kept; names that are not would be without end.
 
     With ``former`` a name that is gone has the type of what took its place: what a script does with it can be judged.
     """
 
     def __init__(self, symbols: Symbols, former: FormerNames | None = None) -> None:
-        self.symbols = symbols
+        super().__init__(symbols)
+        self.literals = LiteralClasses(self, former)
         self._former = former
-        self._own: dict[str, dict[str, Symbol]] = {}
         self._sockets: dict[str, tuple[Symbol, ...]] = {}
-        self._lineages: dict[str, tuple[str, ...]] = {}
         self._members: dict[tuple[str, str], Member] = {}
-        self._descendants: dict[str, tuple[str, ...]] = {}
         self._below: dict[tuple[str, str], tuple[tuple[str, Member], ...]] = {}
-        self._named: dict[tuple[str, str], str] = {}
         self._returns: dict[str, Type] = {}
-        self._value_classes: dict[str, dict[str, str]] = {}
-        self._settable_kinds: dict[str, str] = {}
-        self._labels: dict[str, dict[str, list[str]]] = {}
-
-    # Classes.
-
-    def is_class(self, path: str) -> bool:
-        """Whether the path is a class."""
-        symbol = self.symbols.symbol(path)
-        return symbol is not None and symbol.kind == "class"
-
-    def lineage(self, cls: str) -> tuple[str, ...]:
-        """A class and its bases, nearest first."""
-        found = self._lineages.get(cls)
-        if found is None:
-            names: list[str] = []
-            path = cls
-            while path and path not in names and (symbol := self.symbols.symbol(path)):
-                names.append(path)
-                path = symbol.base
-            found = tuple(names)
-            if names:
-                self._lineages[cls] = found
-        return found
-
-    def descends(self, cls: str, ancestor: str) -> bool:
-        """Whether a class is ``ancestor`` or derives from it."""
-        return cls == ancestor or ancestor in self.lineage(cls)
-
-    def descendants(self, cls: str) -> tuple[str, ...]:
-        """Every class below a class."""
-        found = self._descendants.get(cls)
-        if found is None:
-            queue, names = [cls], dict[str, None]()
-            while queue and len(names) < _MOST_CLASSES:
-                for child in self.symbols.subclasses(queue.pop()):
-                    if child not in names:
-                        names[child] = None
-                        queue.append(child)
-            found = self._descendants[cls] = tuple(names)
-        return found
-
-    def class_named(self, name: str, scope: str = "") -> str:
-        """The path of the class that a name in the text of a type means, seen from the symbol ``scope``."""
-        key = name, scope
-        found = self._named.get(key)
-        if found is None:
-            found = self._named[key] = next(
-                (path for path in self._candidates(name, scope) if self.is_class(path)), ""
-            )
-        return found
-
-    @staticmethod
-    def _candidates(name: str, scope: str) -> Iterator[str]:
-        if "." in name:
-            yield name
-        last = name.rpartition(".")[2]
-        while "." in scope:
-            scope = scope.rpartition(".")[0]
-            yield f"{scope}.{last}"
-        yield f"{T}{last}"
-        yield f"mathutils.{last}"
-        yield f"bmesh.types.{last}"
-        yield f"gpu.types.{last}"
-        yield f"mathutils.{last.lower()}.{last}"
 
     # Members.
-
-    def own(self, owner: str) -> dict[str, Symbol]:
-        """What a class or module has itself, by name; without sockets."""
-        found = self._own.get(owner)
-        if found is None:
-            found = {symbol.name: symbol for symbol in self.symbols.members(owner) if symbol.kind != "socket"}
-            self._own[owner] = found
-        return found
-
-    def _own_member(self, owner: str, name: str) -> Symbol | None:
-        """One of them; all would be thousands, of ``bpy.types`` say."""
-        if (own := self._own.get(owner)) is not None:
-            return own.get(name)
-        symbol = self.symbols.symbol(f"{owner}.{name}")
-        return symbol if symbol is not None and symbol.kind != "socket" else None
 
     def member(self, cls: str, name: str) -> Member | None:
         """A member of a class, inherited ones included, or of a module."""
         key = cls, name
         found = self._members.get(key)
         if found is None:
-            for ancestor in self.lineage(cls) or (cls,):
-                if symbol := self._own_member(ancestor, name):
-                    found = self._members[key] = Member(symbol, self._type_of(symbol))
-                    break
+            symbol = self.inherited(cls, name)
+            if symbol is not None:
+                found = self._members[key] = Member(symbol, self._type_of(symbol))
         return found
 
     def below(self, cls: str, name: str) -> tuple[tuple[str, Member], ...]:
@@ -235,7 +122,7 @@ class Api:
         if found is None:
             rows: dict[str, tuple[str, Member]] = {}
             for child in self.descendants(cls):
-                symbol = self._own_member(child, name)
+                symbol = self.own_member(child, name)
                 if symbol is not None and symbol.path not in rows:
                     rows[symbol.path] = child, Member(symbol, self._type_of(symbol))
             found = tuple(rows.values())
@@ -400,102 +287,6 @@ class Api:
             return UNKNOWN
         return self.read_type(result.type, symbol.path)
 
-    # What literals mean.
-
-    def class_of_value(self, base: str, value: str) -> str:
-        """The class below ``base`` that a value stands for: Modifier and ``CLOTH`` → ClothModifier; empty for none."""
-        if value.isidentifier():
-            cls = f"{T}{value}"
-            if not self.is_class(cls) and self._former:
-                cls = self._former.still_works(cls)  # the name of another Blender, which this one takes
-            if cls and self.descends(cls, base):
-                return cls
-        if base == _INTERFACE and value.startswith("NodeSocket"):
-            cls = f"{base}{value.removeprefix('NodeSocket')}"
-            return cls if self.is_class(cls) else ""
-        if base not in self._value_classes:
-            self._value_classes[base] = self._values_of(base)
-        return self._value_classes[base].get(value, "")
-
-    def class_of_maker(self, base: str, function: str) -> str:
-        """The class below ``base`` that a function is named after: Strip and ``new_sound`` → SoundStrip; or empty."""
-        kind = function.removeprefix(_MAKER)
-        return "" if kind == function else self.class_of_value(base, kind.upper())
-
-    def _values_of(self, base: str) -> dict[str, str]:
-        """Value → class, for every value of the property of ``base`` that tells its classes apart."""
-        symbol = next((m.symbol for name in DISCRIMINANTS if (m := self.member(base, name))), None)
-        short = base.removeprefix(T)
-        last = _WORD.search(short)
-        affixes = {short.lower(), last[0].lower() if last else ""}
-        around = _AROUND.fullmatch(short)
-        by_name: dict[str, str] = {}
-        by_label: dict[str, str] = {}
-        for path in self.descendants(base):
-            cls = self.symbols.symbol(path)
-            name = path.removeprefix(T).lower()
-            by_name[name] = path
-            for affix in affixes:
-                by_name.setdefault(_SIMPLE.sub("", name.removesuffix(affix).removeprefix(affix)), path)
-                label = _SIMPLE.sub("", cls.label.lower() if cls else "")
-                by_label.setdefault(label.removesuffix(affix).removeprefix(affix), path)
-            if around:  # ActionStrip and ActionKeyframeStrip
-                by_name.setdefault(name.removeprefix(around[1].lower()).removesuffix(around[2].lower()), path)
-        found: dict[str, str] = {}
-        for item in symbol.enum_items if symbol else ():
-            key, label = (_SIMPLE.sub("", text.lower()) for text in (item.identifier, item.name))
-            if path := by_name.get(key) or by_label.get(key) or by_label.get(label):
-                found[item.identifier] = path
-        if base == NODE:
-            found |= self._nodes_by_type()
-        for value, name in CLASS_OF_VALUE.get(short, {}).items():
-            if self.is_class(T + name):
-                found[value] = T + name
-        return found
-
-    def _nodes_by_type(self) -> dict[str, str]:
-        """The value of ``type`` → the class of nodes, of those that nodes of one class alone have."""
-        classes: dict[str, list[str]] = {}
-        for path in self.descendants(NODE):
-            symbol = self.symbols.symbol(path)
-            for value in symbol.flagged(NODE_TYPE) if symbol else ():
-                classes.setdefault(value, []).append(path)
-        return {value: paths[0] for value, paths in classes.items() if len(paths) == 1}
-
-    def settable_kind(self, cls: str) -> str:
-        """The base of a class whose instances become one of another class below it by a setting; empty for none."""
-        if cls not in self._settable_kinds:
-            self._settable_kinds[cls] = self._settable_kind(cls) if self.is_class(cls) else ""
-        return self._settable_kinds[cls]
-
-    def _settable_kind(self, cls: str) -> str:
-        for name in DISCRIMINANTS:
-            member = self.member(cls, name)
-            if member is not None and READ_ONLY not in member.symbol.flags and member.symbol.type == "enum":
-                base = member.symbol.owner
-                values = (item.identifier for item in member.symbol.enum_items)
-                if any(self.class_of_value(base, value) for value in values):
-                    return base
-        return ""
-
-    def classes_by_label(self, base: str, text: str) -> list[str]:
-        """The classes below ``base`` whose instances are called ``text`` unless somebody renames them."""
-        if base not in self._labels:
-            labels: dict[str, list[str]] = {}
-            for path in self.descendants(base):
-                symbol = self.symbols.symbol(path)
-                label = symbol.label if symbol else ""
-                texts = {label.removesuffix(suffix) for suffix in ("", " Modifier", " Constraint")}
-                texts.add(CALLED.get(path.removeprefix(T), ""))
-                # The name that Blender gives; what nodes call their sockets tells no class of sockets.
-                if symbol and not is_socket(symbol.reached) and (key := _KEY.search(symbol.reached)):
-                    texts.add(key["name"])
-                for own in texts - {""}:
-                    labels.setdefault(own, []).append(path)
-            self._labels[base] = labels
-        name, dot, number = text.rpartition(".")
-        return self._labels[base].get(name if dot and number.isdigit() else text, [])
-
     def sockets(self, cls: str, side: str) -> Iterator[Symbol]:
         """The sockets of a node's class on one side, ``inputs`` or ``outputs``."""
         found = self._sockets.get(cls)
@@ -538,4 +329,4 @@ class Api:
 
     def is_operator_method(self, name: str) -> bool:
         """Whether every operator of ``bpy.ops`` has an attribute of this name."""
-        return name in _OPERATOR_METHODS
+        return name in OPERATOR_METHODS

@@ -220,13 +220,13 @@ class ApiCalls(Callbacks):
         if result.cls == _KEY:
             properties = self._set_up(Instance(OPERATOR_PROPERTIES), given.get("idname", UNKNOWN))
             return replace(result, traits=(("properties", properties),))
-        if cls := self.api.class_of_maker(result.cls, symbol.name):
+        if cls := self.api.literals.class_of_maker(result.cls, symbol.name):
             return replace(result, cls=cls)
         is_open = not DERIVED_BY_SCRIPTS.isdisjoint(self.api.lineage(result.cls))
         found: list[Type] = []
         for name in ("type", "socket_type", "effect_type"):
             for value in literal_texts(given[name]) if name in given else ():
-                cls = self.api.class_of_value(result.cls, value)
+                cls = self.api.literals.class_of_value(result.cls, value)
                 if not cls and is_open and (own := self._own_class(value, result.cls)):
                     found.append(LocalInstance(own.number))
                     continue

@@ -85,7 +85,7 @@ class Calls(ApiCalls, PythonCalls):
         values = literal_texts(call.keywords["type"]) if "type" in call.keywords else ()
         if not isinstance(data, Instance) or not values:
             return data
-        classes = (self.api.class_of_value(data.cls, value) for value in values)
+        classes = (self.api.literals.class_of_value(data.cls, value) for value in values)
         return union([replace(data, cls=cls) if cls else data for cls in classes])
 
     def _one_of_several(self, callee: Union, call: ReadCall) -> Type:

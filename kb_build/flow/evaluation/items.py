@@ -116,7 +116,7 @@ class Items(Core):
 
     def _classes_by_name(self, base: str, name: str) -> list[str]:
         """The classes of what may have a name among things of the class ``base``; none where that is not known."""
-        classes = self.api.classes_by_label(base, name)
+        classes = self.api.literals.classes_by_label(base, name)
         for thing in self.here.file.given_names.get(name, ()):
             kind = self.here.types.get(thing) if thing else None
             if not isinstance(kind, Instance):
@@ -128,7 +128,7 @@ class Items(Core):
     def as_found(self, kind: Type) -> Type:
         """What is looked up anew: another class, as soon as something may have set what it is. Names keep theirs."""
         if isinstance(kind, Instance) and any(file.sets_types for file in self.sources):
-            base = self.api.settable_kind(kind.cls)
+            base = self.api.literals.settable_kind(kind.cls)
             return replace(kind, cls=base) if base else kind
         return kind
 

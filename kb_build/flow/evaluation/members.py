@@ -167,7 +167,7 @@ class Members(Items):
     def is_open(self, cls: str) -> bool:
         """Whether instances of a class have members that its symbols do not tell."""
         symbol = self.api.symbols.symbol(cls)
-        if symbol is None or symbol.kind != "class" or symbol.group in {"ui", "operator"} or _half_known(cls):
+        if symbol is None or symbol.kind != "class" or symbol.is_of_interface or _half_known(cls):
             return True
         bases = [base for base in OPEN_CLASSES if self.api.descends(cls, base)]
         # What an add-on of Blender's declares (scene.cycles) is all that there is, until scripts declare more.

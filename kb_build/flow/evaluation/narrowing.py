@@ -168,7 +168,7 @@ class Narrowing(Guards):
                 if member.cls == OBJECT:
                     data = self.api.object_data(value)
                     found.append(replace(member, traits=(("data", data),)) if data is not UNKNOWN else member)
-                elif cls := self.api.class_of_value(member.cls, value):
+                elif cls := self.api.literals.class_of_value(member.cls, value):
                     found.append(Instance(cls))
                 else:
                     found.append(member)
@@ -177,7 +177,7 @@ class Narrowing(Guards):
 
     def _know_space(self, area: ast.expr, values: list[str]) -> None:
         """The active space of an area whose type is one of ``values`` is one of theirs."""
-        spaces = [self.api.class_of_value(SPACE, value) for value in values]
+        spaces = [self.api.literals.class_of_value(SPACE, value) for value in values]
         if (text := chain_text(area)) and all(spaces):
             self.here.scope.state.chains[f"{text}.{_ACTIVE_SPACE}"] = union(map(Instance, spaces))
 

@@ -210,7 +210,7 @@ class Assignments(Guards, Annotations):
     def _forget_kinds(self, owner: Type) -> None:
         """Something becomes of another class: what is read anew from a chain may be that."""
         classes = [kind.cls for kind in members(owner) if isinstance(kind, Instance)]
-        bases = {SPACE if cls == AREA else self.api.settable_kind(cls) for cls in classes} - {""}
+        bases = {SPACE if cls == AREA else self.api.literals.settable_kind(cls) for cls in classes} - {""}
         chains = self.here.scope.state.chains
         self.spend(len(chains))
         for text, kind in [*chains.items()] if bases else ():

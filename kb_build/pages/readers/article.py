@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, ClassVar
 from bs4 import Tag
 from bs4.element import PreformattedString
 
+from kb_build.pages.page import Section
 from kb_build.pages.readers import markdown as md
 from kb_build.pages.readers.html_elements import (
     HEADINGS,
@@ -26,7 +27,6 @@ from kb_build.pages.readers.html_elements import (
     plain_text,
     slug_of,
 )
-from kb_build.symbols.records import Section
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.records import Page, PageSource, Section
+from kb_build.pages.page import Page, PageSource, Section
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, ClassVar
 from docutils import nodes
 from sphinx import addnodes
 
+from kb_build.pages.page import Section
 from kb_build.pages.readers import markdown as md
-from kb_build.symbols.records import Section
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -12,19 +12,19 @@ from typing import TYPE_CHECKING
 from bs4 import BeautifulSoup, Tag
 
 from kb_build.errors import SourceError
+from kb_build.pages.page import Section
 from kb_build.pages.readers import markdown as md
 from kb_build.pages.readers.article import read_article
 from kb_build.pages.readers.assemble import ROOT, PageText, assemble
 from kb_build.pages.readers.html_elements import slug_of
 from kb_build.pages.readers.workers import PageBudget, PageWork, read_apart, read_elsewhere
-from kb_build.symbols.records import Section
 from simworlds.folder_files import FolderLimits, list_files, read_file
 from simworlds.forked import can_fork
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kb_build.symbols.records import Page, PageSource
+    from kb_build.pages.page import Page, PageSource
 
     Progress = Callable[[int, int], None]
 

@@ -11,7 +11,7 @@ import re
 from bisect import insort
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.symbols.records import Section
+from kb_build.pages.page import Section
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -29,7 +29,7 @@ from simworlds.forked import can_fork
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Mapping, Sequence
 
-    from kb_build.symbols.records import Page, PageSource
+    from kb_build.pages.page import Page, PageSource
 
     Progress = Callable[[int, int], None]
 

@@ -23,13 +23,13 @@ from sphinx.transforms import SphinxTransform
 from sphinx.transforms.post_transforms.code import HighlightLanguageTransform
 from sphinx.util.docutils import LoggingReporter
 
+from kb_build.pages.page import Section
 from kb_build.pages.readers import blender_markup
 from kb_build.pages.readers import markdown as md
 from kb_build.pages.readers.assemble import PageText
 from kb_build.pages.readers.doctree import PAGE_SCHEME, DoctreeReader
 from kb_build.pages.readers.docutils_speed import begin_page, classes_of_page
 from kb_build.pages.readers.workers import PageBudget, PageWork, ReadPages, read_apart
-from kb_build.symbols.records import Section
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence, Set

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from multiprocessing.connection import Connection
     from multiprocessing.context import ForkProcess
 
-    from kb_build.symbols.records import Page
+    from kb_build.pages.page import Page
 
 _BATCH: Final = 10
 _LARGER_BATCH: Final = 60

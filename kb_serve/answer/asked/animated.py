@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import terms
 from kb_build.symbols.api_names import STRUCT
+from kb_build.symbols.flag_names import ANIMATABLE
 from kb_build.symbols.lines import written
 from kb_build.symbols.paths import last_name
-from kb_build.symbols.records import ANIMATABLE
 from kb_serve.answer.budget import AnswerBlock
 
 if TYPE_CHECKING:

@@ -7,9 +7,9 @@ import textwrap
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.flag_names import RETURNS_NONE
 from kb_build.symbols.flags import never_taken
 from kb_build.symbols.lines import SET, literal, refusal_lines, said_taken, taken_where
-from kb_build.symbols.records import RETURNS_NONE
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.facts.enum_items import item_lines
 from kb_serve.answer.facts.properties import UNITS

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import BEGIN_DRAWING, SIDES
-from kb_build.symbols.records import GIVES_NONE, WINDOWLESS
+from kb_build.symbols.flag_names import GIVES_NONE, WINDOWLESS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
-from kb_build.symbols.records import DEFINED, DEFINED_ALWAYS, MUST_HAVE, OF_CLASS
+from kb_build.symbols.flag_names import DEFINED, DEFINED_ALWAYS, MUST_HAVE, OF_CLASS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

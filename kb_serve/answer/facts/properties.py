@@ -5,9 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.accepted import accepted_text, part_text
-from kb_build.symbols.flags import is_locked
-from kb_build.symbols.lines import default_text, locked_text, shown_when, subscripts_text, type_text
-from kb_build.symbols.records import (
+from kb_build.symbols.flag_names import (
     ANIMATABLE,
     ENUM_FLAG,
     HIDDEN,
@@ -22,6 +20,8 @@ from kb_build.symbols.records import (
     STOPS,
     UNBOUNDED,
 )
+from kb_build.symbols.flags import is_locked
+from kb_build.symbols.lines import default_text, locked_text, shown_when, subscripts_text, type_text
 from kb_serve.answer.facts.ranges import range_text
 
 if TYPE_CHECKING:

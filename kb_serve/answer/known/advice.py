@@ -11,13 +11,12 @@ from kb_serve.recognise.messages.keys import KEY_OF_SLOTS, SLOTTED
 from kb_serve.recognise.messages.nameless.python import PLAIN_FUNCTION
 from kb_serve.recognise.messages.nameless.rendering import OF_32_BITS
 from kb_serve.recognise.messages.none_before import TAKES_NO_MODIFIER
-from kb_serve.recognise.messages.ways_to_run import NO_FLUIDS
+from kb_serve.recognise.messages.ways_to_run import BAKES_FLUIDS, NO_FLUIDS
 
 _STROKE = "_bpy_internal.grease_pencil.stroke.GreasePencilStroke"
 _STYLE = f"{TYPES}MaterialGPencilStyle"
 _RIGID_BODY = f"{TYPES}RigidBodyObject"
 _RANGES = f"{TYPES}bpy_struct.id_properties_ui"
-_BAKES_FLUIDS = "bpy.ops.fluid.bake_all"
 _PERSISTENT = f"{HANDLERS}persistent"
 
 _STAYING = (
@@ -282,7 +281,7 @@ ADVICE: tuple[Advice, ...] = (
         frozenset({"bpy.ops.object.quick_liquid", "bpy.ops.object.quick_smoke"})
         | of("FluidDomainSettings", "FluidModifier"),
         beginning=("bpy.ops.fluid.bake_",),
-        explained=_BAKES_FLUIDS,
+        explained=BAKES_FLUIDS,
         wherever=(
             stems("fluid smoke fire liquid"),
             stems("abort background crash headless terminate window"),

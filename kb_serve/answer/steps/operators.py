@@ -6,7 +6,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
-from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.api_names import REMOVING_VERBS, TYPES
 from kb_build.symbols.flags import operator_active, operator_areas
 from kb_build.symbols.lines import literal
 from kb_serve.answer.facts.arguments import of_file_browser
@@ -37,12 +37,7 @@ _WORKS_WITH = {
     "bpy.ops.render.render": ('`scene.render.filepath = "//render.png"`', "write_still=True"),
 }
 # What takes away what steps have made and set.
-UNDO = frozenset(
-    {
-        "clear", "delete", "deselect", "dissolve", "free", "purge", "remove", "separate", "unassign", "unlink",
-        "unpack",
-    }
-)  # fmt: skip
+UNDO = REMOVING_VERBS | {"deselect", "dissolve", "purge", "separate", "unpack"}
 _MARK = "mark"  # what others then go by, as seams
 _SHOW = frozenset({"play", "show"})  # what has been done
 _MAKE_OR_REMOVE = UNDO | frozenset(

@@ -6,9 +6,9 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.flag_names import OF_CLASS, STATIC
 from kb_build.symbols.lines import with_article
 from kb_build.symbols.paths import last_name
-from kb_build.symbols.records import OF_CLASS, STATIC
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.flag_names import CALLS
 from kb_build.symbols.flags import fillers, operator_areas, operator_given, refused_nothing
 from kb_build.symbols.lines import area_text, operator_needs
-from kb_build.symbols.records import CALLS
 from kb_serve.answer.facts.conditions import condition_lines
 
 if TYPE_CHECKING:

@@ -6,9 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import NODE, TYPES
-from kb_build.symbols.flags import alike_nodes, empty_when_new, fillers, new_subscript
-from kb_build.symbols.lines import default_text, item_of, of_evaluated
-from kb_build.symbols.records import (
+from kb_build.symbols.flag_names import (
     EMPTY,
     EMPTY_AT_START,
     EVALUATED,
@@ -20,6 +18,8 @@ from kb_build.symbols.records import (
     WITHOUT_AREA,
     WITHOUT_SHOWN,
 )
+from kb_build.symbols.flags import alike_nodes, empty_when_new, fillers, new_subscript
+from kb_build.symbols.lines import default_text, item_of, of_evaluated
 from kb_serve.answer.ways.makers_of_instances import told_makers
 from kb_serve.answer.ways.operator_needs import calls_before
 

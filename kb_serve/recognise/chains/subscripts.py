@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import stem, words
-from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.api_names import NEW_SOCKET, TYPES
 
 if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol
@@ -16,7 +16,6 @@ NODES_MODIFIER = f"{TYPES}NodesModifier"
 MODIFIER_PROPERTIES = f"{TYPES}NodesModifierProperties"
 OF_NODES_MODIFIER = (NODES_MODIFIER, MODIFIER_PROPERTIES)  # what the inputs were, or are, asked of
 PROPERTIES_OF_OPERATORS = f"{TYPES}OperatorProperties"
-_NEW_INPUT = f"{TYPES}NodeTreeInterface.new_socket"
 # How Blender identifies the inputs and outputs of a group, as keys of its modifier: by itself no other key looks so.
 INPUT_KEY = re.compile(r"((?:Socket|Input|Output)_\d+)(_use_attribute|_attribute_name)?")
 # The classes whose instances, and whose subclasses' instances, take custom properties. (Of the modifier, whose inputs
@@ -87,7 +86,7 @@ def asked_of_inputs(query: str) -> str:
     if stems.isdisjoint(_MAKING):
         return "" if stems.isdisjoint(_OUTSIDE | _INPUT if is_of_modifier else _OUTSIDE) else NODES_MODIFIER
     is_new = is_of_modifier and not stems.isdisjoint(_PARTS) and not stems.isdisjoint(_NEW)
-    return _NEW_INPUT if is_new else ""
+    return NEW_SOCKET if is_new else ""
 
 
 class CustomProperties:

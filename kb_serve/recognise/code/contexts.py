@@ -7,9 +7,9 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import OBJECT
+from kb_build.symbols.flag_names import REFUSED_ALL
 from kb_build.symbols.flags import operator_also, operator_areas, operator_given, refused_nothing
 from kb_build.symbols.lines import TRIED, operator_needs
-from kb_build.symbols.records import REFUSED_ALL
 from kb_serve.recognise.chains.call_texts import arguments
 from kb_serve.recognise.chains.chains import find_chains
 from kb_serve.recognise.chains.variables import usual_classes

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.symbols.api_names import REMOVING_VERBS
 from kb_build.symbols.api_names import TYPES as T
 
 if TYPE_CHECKING:
@@ -26,7 +27,8 @@ ADDING = frozenset(
         "resize",
     }
 )
-REMOVING = frozenset({"clear", "delete", "destroy", "discard", "erase", "free", "pop", "remove", "unlink"})
+# What is unassigned is there still.
+REMOVING = (REMOVING_VERBS - {"unassign"}) | {"destroy", "erase", "pop"}
 
 
 class Elsewhere(NamedTuple):

@@ -6,8 +6,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import BLEND_DATA, CONTEXT, ID, STRUCT, TYPES
+from kb_build.symbols.flag_names import WITHOUT_ACTIVE
 from kb_build.symbols.flags import empty_when_new, fillers
-from kb_build.symbols.records import WITHOUT_ACTIVE
 
 if TYPE_CHECKING:
     from kb_serve.lookups.records import SymbolEntry

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.flag_names import READ_ONLY
 from kb_build.symbols.lines import locked_text
-from kb_build.symbols.records import READ_ONLY
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.changed_by import changed_by
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.flag_names import PROVIDED_BY
 from kb_build.symbols.object_data import OBJECT_DATA
-from kb_build.symbols.records import PROVIDED_BY
 
 if TYPE_CHECKING:
     from kb_build.symbols.records import Symbol

@@ -6,8 +6,8 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import COLLECTION, SIDES, TYPES
+from kb_build.symbols.flag_names import EMPTY, EVALUATED
 from kb_build.symbols.lines import GET_EVALUATED
-from kb_build.symbols.records import EMPTY, EVALUATED
 from kb_serve.recognise import message_patterns as forms
 
 if TYPE_CHECKING:

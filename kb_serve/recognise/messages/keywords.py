@@ -35,7 +35,6 @@ _TAKEN_HERE = (
 )
 _UNDO = "undo"
 _UNDO_BY_PLACE = "Whether an undo step is made is told by place: `{path}('EXEC_DEFAULT', True, …)`."
-_OF_OPERATORS = "to operator properties"
 _PARTS = re.compile(r"\b([A-Z_]+)_OT_(\w+)\s*=\s*\{([^{}]*)\}")
 _CALLED = re.compile(r"\bbpy\.ops\.\w+\.\w+(?=\()")
 _OWN_OPERATOR = (
@@ -79,14 +78,14 @@ class Keywords:
 
     def _part_given(self, name: str, query: str) -> Symbol | None:
         """The operator that is a part of the called one, and is given an argument in a dictionary."""
-        for module, operator, given in _PARTS.findall(query) if _OF_OPERATORS in query else ():
+        for module, operator, given in _PARTS.findall(query) if forms.OF_OPERATORS in query else ():
             if re.search(rf"""(['"]){re.escape(name)}\1\s*:""", given):
                 return self._reader.symbol(f"{OPERATORS}{module.lower()}.{operator}")
         return None
 
     def _own_operator(self, query: str) -> str:
         """The operator that code beside a message calls, where that is none of Blender's: one of the script's own."""
-        called = _CALLED.findall(query) if _OF_OPERATORS in query else []
+        called = _CALLED.findall(query) if forms.OF_OPERATORS in query else []
         own = [path for path in dict.fromkeys(called) if not self._reader.entry(path)]
         is_known = any(self._reader.history.removed(path) for path in own)
         return own[0] if len(own) == len(set(called)) == 1 and not is_known else ""

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import terms
 from kb_build.symbols.api_names import OPERATORS, TYPES
+from kb_build.symbols.flag_names import FILLED_BY, NEVER_NONE, READ_ONLY, RETURNS_NONE
 from kb_build.symbols.flags import empty_when_new, fillers
-from kb_build.symbols.records import FILLED_BY, NEVER_NONE, READ_ONLY, RETURNS_NONE
 from kb_serve.recognise.chains.bindings import with_bindings
 from kb_serve.recognise.chains.chains import find_chains
 from kb_serve.recognise.chains.variables import usual_classes

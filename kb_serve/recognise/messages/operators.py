@@ -6,9 +6,9 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import OPERATORS, TYPES
+from kb_build.symbols.flag_names import REFUSED_ALL
 from kb_build.symbols.flags import operator_given, refused_nothing
 from kb_build.symbols.lines import operator_needs
-from kb_build.symbols.records import REFUSED_ALL
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.chains.operator_classes import known_operator_of_class
 from kb_serve.recognise.code.contexts import NO_OVERRIDE, OVERRIDE, context_for, keywords_given

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import NODE, TYPES
+from kb_build.symbols.flag_names import HIDDEN
 from kb_build.symbols.lines import shown_when
 from kb_build.symbols.paths import last_name, socket_side
-from kb_build.symbols.records import HIDDEN
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import ID
-from kb_build.symbols.records import ANIMATABLE
+from kb_build.symbols.flag_names import ANIMATABLE
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.changed_by import ANIMATED_BY
 from kb_serve.recognise.likely.corrections import nearest

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_build.symbols.api_names import OPERATORS
+from kb_build.symbols.flag_names import READ_ONLY
 from kb_build.symbols.paths import last_name, plain_path
-from kb_build.symbols.records import READ_ONLY
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.likely.likely_values import likely_values
 
@@ -33,7 +33,6 @@ _ONE_OF = "`{name}` is not an item of this enum, which has {items}."
 _MINUS = "-"  # which a name's key does not tell
 _MOST_ITEMS = 8  # that are listed
 _NEVER = "RNA lists `{name}` for `{owner}`, and no {thing} comes to have it.{instead}"
-_OF_OPERATORS = "to operator properties"
 _OF_PROPERTIES = "item.attr = val"
 
 
@@ -107,7 +106,7 @@ class Values:
         """How what a message says was called begins: a function's name, that of any operator; empty for nothing."""
         function = forms.IN_FUNCTION.search(query)
         called = self._symbols.function(function["method"]) if function else ""
-        return called or (OPERATORS if _OF_OPERATORS in query else "")
+        return called or (OPERATORS if forms.OF_OPERATORS in query else "")
 
     def _refusing(self, owners: Iterable[str], query: str) -> list[str]:
         """Those of some owners of a value that a message may be about, the most important first: arguments of

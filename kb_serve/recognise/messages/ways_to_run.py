@@ -16,7 +16,7 @@ _NO_DRAWING = (
     "shaders, batches and off-screen buffers of `gpu` work only in a Blender with a window. Images are rendered "
     "without one: `bpy.ops.render.render(write_still=True)`."
 )
-_BAKES_FLUIDS = "bpy.ops.fluid.bake_all"
+BAKES_FLUIDS = "bpy.ops.fluid.bake_all"
 NO_FLUIDS = (
     "Mantaflow, which simulates fluids, is not set up wholly where Blender is a Python module (`import bpy` in another "
     "Python): every bake of a fluid ends the process there, and so does its exit once frames were set with a domain in "
@@ -37,7 +37,7 @@ class WaysToRun:
             self._no_drawing(recognition)
         if forms.NO_FLUIDS.search(query):
             recognition.notes.append(NO_FLUIDS)
-            recognition.add(_BAKES_FLUIDS, 0.95, "error message")
+            recognition.add(BAKES_FLUIDS, 0.95, "error message")
 
     def _no_drawing(self, recognition: Recognition) -> None:
         """Blender without a window: what begins drawing there, where this version has it."""

@@ -17,7 +17,7 @@ from kb_build.symbols.accepted import (
     accepted_text,
     fatal_kinds,
 )
-from kb_build.symbols.records import NAMES_PART
+from kb_build.symbols.flag_names import NAMES_PART
 
 if TYPE_CHECKING:
     from kb_build.blender.extract_reader import Extract

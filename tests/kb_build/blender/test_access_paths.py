@@ -12,7 +12,8 @@ from told_by_blender import told_by_blender
 from kb_build.blender.access_paths import reached_expressions
 from kb_build.flow.blender.symbols import BaseSymbols
 from kb_build.index.empty_ways import EmptyWays
-from kb_build.symbols.records import ITERATED, WITHOUT_AREA, WITHOUT_SHOWN, Symbol
+from kb_build.symbols.flag_names import ITERATED, WITHOUT_AREA, WITHOUT_SHOWN
+from kb_build.symbols.records import Symbol
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.blender.docstrings import call_parameters, parse_docstring
+from kb_build.blender.docstrings.calls import call_parameters
+from kb_build.blender.docstrings.docstring import parse_docstring
 from kb_build.symbols.records import Parameter
 
 if TYPE_CHECKING:

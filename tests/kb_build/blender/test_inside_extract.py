@@ -15,6 +15,14 @@ import pytest
 from statements_in_blender import run_statements
 
 from kb_build.blender.extractor import extract_api
+from kb_build.symbols.flag_names import (
+    ALSO,
+    ENDS_BEFORE,
+    NOT_ENOUGH,
+    REFUSED_ALL,
+    WITHOUT_ACTIVE,
+    WITHOUT_AREA,
+)
 from kb_build.symbols.flags import (
     fillers,
     never_taken,
@@ -25,15 +33,7 @@ from kb_build.symbols.flags import (
     usual_default,
 )
 from kb_build.symbols.lines import operator_needs, poll_line, shown_when, type_text
-from kb_build.symbols.records import (
-    ALSO,
-    ENDS_BEFORE,
-    NOT_ENOUGH,
-    REFUSED_ALL,
-    WITHOUT_ACTIVE,
-    WITHOUT_AREA,
-    NewValue,
-)
+from kb_build.symbols.records import NewValue
 from simworlds.sandbox.runtime import find_runtime
 
 if TYPE_CHECKING:

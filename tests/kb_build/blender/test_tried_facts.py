@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 from statements_in_blender import run_statements
 
-from kb_build.symbols.flags import usual_default
-from kb_build.symbols.lines import default_text, shown_when, type_text
-from kb_build.symbols.records import (
+from kb_build.symbols.flag_names import (
     BARE_DATA,
     EMPTY_AT_START,
     FILLED_AT_START,
@@ -23,6 +21,8 @@ from kb_build.symbols.records import (
     SETS_ALSO,
     WINDOWLESS,
 )
+from kb_build.symbols.flags import usual_default
+from kb_build.symbols.lines import default_text, shown_when, type_text
 from kb_build.symbols.taken import AT_TIMES, Setting, Taken
 
 if TYPE_CHECKING:
@@ -143,6 +143,10 @@ def test_modes_that_nothing_enters_are_told(symbols: Mapping[str, Symbol]) -> No
         ("ParticleSettings.path_start", {"min=0", "max=1"}),
         ("MultiresModifier.levels", {"max=0"}),
         ("Scene.frame_current", {"min=0"}),
+        # Its highest number is refused with all above it, and leaves what there was.
+        ("UDIMTile.number", {"min=1001"}),
+        # Assigning it makes another marker.
+        ("MovieTrackingMarker.frame", set()),
         ("SubsurfModifier.levels", set()),
         ("RigidBodyObject.mass", set()),
         # Its usual number is this machine's.

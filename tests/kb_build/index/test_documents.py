@@ -10,7 +10,8 @@ import pytest
 from kb_build.index.analysis import STOP_WORDS, terms
 from kb_build.index.documents import Document, chapter_of, kind_of, make_units, topic_documents
 from kb_build.index.postings import vocabulary
-from kb_build.symbols.records import EnumItem, Link, Page, Parameter, Section, Symbol
+from kb_build.pages.page import Page, Section
+from kb_build.symbols.records import EnumItem, Link, Parameter, Symbol
 
 if TYPE_CHECKING:
     from kb_build.blender.extract_reader import Extract

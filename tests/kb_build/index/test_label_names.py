@@ -6,7 +6,8 @@ import pytest
 
 from kb_build.index.label_names import find_label_names
 from kb_build.index.passages import Passage
-from kb_build.symbols.records import Page, Section, Symbol
+from kb_build.pages.page import Page, Section
+from kb_build.symbols.records import Symbol
 
 SLUG = "render/lights"
 LIGHT = Symbol("bpy.types.Light", "class", "bpy.types", label="Light")

@@ -8,7 +8,8 @@ from kb_build.blender.buttons import Button
 from kb_build.index.label_names import find_label_names
 from kb_build.index.operator_labels import find_labelled_operators, passages_of
 from kb_build.index.passages import Passage, address_of
-from kb_build.symbols.records import Link, Page, Section, Symbol
+from kb_build.pages.page import Page, Section
+from kb_build.symbols.records import Link, Symbol
 
 BAKE = "bpy.ops.ptcache.bake_all"
 

@@ -6,8 +6,10 @@ from dataclasses import replace
 
 from kb_build.index.panel_passages import find_panel_passages
 from kb_build.pages.definitions import passage_text
+from kb_build.pages.page import Page, Section
 from kb_build.panels.panel_labels import PanelLabel
-from kb_build.symbols.records import INVERTED, Link, Page, Section, Symbol
+from kb_build.symbols.flag_names import INVERTED
+from kb_build.symbols.records import Link, Symbol
 
 EMISSION = Section(
     "emission",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from kb_build.index.label_names import LabelName
 from kb_build.index.passage_texts import passage_rows
 from kb_build.index.passages import Passage
-from kb_build.symbols.records import Page, Section
+from kb_build.pages.page import Page, Section
 
 TEXT = "**Quality**\n  Higher is better.\n  - **High** Slow.\n\n**Mass**\n  In kilograms."
 PAGE = Page(

@@ -9,7 +9,9 @@ import pytest
 
 from kb_build.index.passages import address_of, find_passages, keys_of_term
 from kb_build.pages.definitions import passage_text, term_lines
-from kb_build.symbols.records import INVERTED, EnumItem, Link, Page, Section, Symbol
+from kb_build.pages.page import Page, Section
+from kb_build.symbols.flag_names import INVERTED
+from kb_build.symbols.records import EnumItem, Link, Symbol
 
 if TYPE_CHECKING:
     from kb_build.index.passages import Passage

@@ -9,8 +9,9 @@ from places import REPO
 
 from kb_build.index.documents import make_units
 from kb_build.index.query_expansions import load_query_expansions, placed_expansions
+from kb_build.pages.page import Page, Section
 from kb_build.summaries.shipped import ShippedSummary
-from kb_build.symbols.records import Link, Page, Section, Symbol
+from kb_build.symbols.records import Link, Symbol
 from kb_build.versions.removed_symbols import RemovedSymbols
 
 QUERIES = REPO / "corpora" / "queries"

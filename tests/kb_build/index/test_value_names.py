@@ -9,8 +9,9 @@ import pytest
 
 from kb_build.index.passages import Passage, find_passages
 from kb_build.index.value_names import find_value_names
+from kb_build.pages.page import Page, Section
 from kb_build.pages.readers.rst import read_rst
-from kb_build.symbols.records import EnumItem, Page, Section, Symbol
+from kb_build.symbols.records import EnumItem, Symbol
 from kb_build.symbols.taken import Setting, Taken
 
 if TYPE_CHECKING:

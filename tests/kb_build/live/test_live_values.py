@@ -10,7 +10,8 @@ import pytest
 
 from kb_build.live.values import compare_values, same_value, told_empty, told_value
 from kb_build.schema import pack, unpack
-from kb_build.symbols.records import EMPTY, FILLED_AT_START, NewValue, Symbol
+from kb_build.symbols.flag_names import EMPTY, FILLED_AT_START
+from kb_build.symbols.records import NewValue, Symbol
 from simworlds.sandbox.runtime import find_runtime
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from kb_build.pages.readers.workers import PageBudget
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kb_build.symbols.records import Page
+    from kb_build.pages.page import Page
 
 HEAD = "Hostile\n=======\n\n"
 MIB = 1 << 20

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from kb_build.symbols.records import Page
+    from kb_build.pages.page import Page
 
 MIB = 1 << 20
 SECRET = "swordfish"

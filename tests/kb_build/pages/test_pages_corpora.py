@@ -14,7 +14,7 @@ from measurements.reader_comparison import ReaderComparison, compare
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kb_build.symbols.records import Page
+    from kb_build.pages.page import Page
 
 pytestmark = pytest.mark.corpora
 # Of the 2,000 HTML pages, so that the test takes a minute; `python -m measurements.page_forms` takes all.

@@ -18,7 +18,7 @@ from measurements.reader_comparison import compare
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kb_build.symbols.records import Page
+    from kb_build.pages.page import Page
 
 MINI = REPO / "tests" / "corpora_mini"
 FAULTY = {"troubleshooting/malformed", "troubleshooting/unknown"}

@@ -13,7 +13,7 @@ from kb_build.pages.readers.rst import read_rst
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from kb_build.symbols.records import Page
+    from kb_build.pages.page import Page
 
 MINI = REPO / "tests" / "corpora_mini"
 

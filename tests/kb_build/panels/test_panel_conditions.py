@@ -13,7 +13,7 @@ from kb_build.flow.analysis import analyse
 from kb_build.flow.blender.api import Api
 from kb_build.flow.blender.symbols import BaseSymbols
 from kb_build.panels.conditions import panel_conditions
-from kb_build.panels.drawing import places_in
+from kb_build.panels.drawn_places import places_in
 from kb_build.panels.gating import from_rows, gatings_in, merged, settled, to_rows
 
 if TYPE_CHECKING:

@@ -9,12 +9,12 @@ import pytest
 from fake_messages_api import FakeMessagesAPI
 from test_summaries_claude import good, options
 
+from kb_build.pages.page import Page, Section
 from kb_build.summaries.methods import summarise
 from kb_build.summaries.prompt import PROMPT_VERSION
 from kb_build.summaries.replies import sound_phrases
 from kb_build.summaries.shipped import ShippedSummary, file_name, shipped_summaries
 from kb_build.summaries.store import MAX_TEXT, SummaryStore
-from kb_build.symbols.records import Page, Section
 
 TEXT = (
     "Cloth simulation is one of the hardest aspects of CG, because it is a deceptively simple real-world item. "

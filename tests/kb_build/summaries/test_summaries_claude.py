@@ -24,11 +24,11 @@ from fake_messages_api import (
 from places import REPO
 
 from kb_build.errors import SummaryError
+from kb_build.pages.page import Page, Section
 from kb_build.summaries.methods import summarise
 from kb_build.summaries.prompt import PROMPT_VERSION
 from kb_build.summaries.store import SummaryStore
 from kb_build.summaries.types import ClaudeOptions, SummaryRun, TokenPrice, summary_key
-from kb_build.symbols.records import Page, Section
 
 CREATE = "POST /v1/messages/batches"
 LIST = "GET /v1/messages/batches"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from kb_build.pages.page import Page, Section
 from kb_build.summaries.extractive import MAX_CHARS
 from kb_build.summaries.methods import summarise
-from kb_build.symbols.records import Page, Section
 
 PROSE = (
     "Cloth simulation is one of the hardest aspects of CG. Cloth has very complex internal and environmental "

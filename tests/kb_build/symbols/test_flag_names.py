@@ -1,4 +1,4 @@
-"""Flags of symbols are told by the names that records.py gives them: a misspelt text would be a silent no."""
+"""Flags of symbols are told by the names that flag_names.py gives them: a misspelt text would be a silent no."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from places import REPO
 
-from kb_build.symbols import records
+from kb_build.symbols import flag_names
 from kb_build.symbols.records import Symbol
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def test_every_flag_has_a_name(part: str) -> None:
         if "inside" not in path.parts
         for line in bare_flags(path.read_text("utf-8"))
     ]
-    assert not bare, f"name these flags in {records.__name__}: {', '.join(bare)}"
+    assert not bare, f"name these flags in {flag_names.__name__}: {', '.join(bare)}"
 
 
 def test_a_sockets_flags_are_read_by_their_names() -> None:

@@ -9,17 +9,15 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from kb_build.pages.page import Page, Section, page_from_json, page_to_json
 from kb_build.symbols.needs import Case, OperatorNeeds, Wanted
 from kb_build.symbols.records import (
     Deprecation,
     EnumItem,
     NewValue,
-    Page,
     Parameter,
     Refusal,
-    Section,
     Symbol,
-    page_from_json,
     symbol_from_json,
     to_json,
 )
@@ -111,7 +109,7 @@ PAGE = Page(
 
 
 def test_a_page_comes_back_as_it_was() -> None:
-    assert page_from_json(json.loads(json.dumps(to_json(PAGE)))) == PAGE
+    assert page_from_json(json.loads(json.dumps(page_to_json(PAGE)))) == PAGE
 
 
 def test_the_text_of_a_page_holds_every_heading_and_section_in_order() -> None:

@@ -7,8 +7,9 @@ from dataclasses import replace
 import pytest
 
 from kb_build.index.analysis import topic_key
+from kb_build.pages.page import Page
 from kb_build.schema import Mark
-from kb_build.symbols.records import Deprecation, EnumItem, NewValue, Page, Parameter, Symbol
+from kb_build.symbols.records import Deprecation, EnumItem, NewValue, Parameter, Symbol
 from kb_build.symbols.tables import action_names, choices_of, marks_of
 
 

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.symbols.records import Page, Section, Symbol
+from kb_build.pages.page import Page, Section
+from kb_build.symbols.records import Symbol
 from kb_build.usage import usage_index
 from kb_build.usage.scripts import Script, blender_scripts
 from kb_build.usage.usage_index import page_usage, script_usage, usage_file, with_aliases

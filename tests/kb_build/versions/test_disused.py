@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from kb_build.blender.tried_facts import add_fact
-from kb_build.symbols.records import BARE_DATA, STUB, Deprecation, Symbol
+from kb_build.symbols.flag_names import BARE_DATA, STUB
+from kb_build.symbols.records import Deprecation, Symbol
 from kb_build.versions.disused import with_later_ways, with_present_ways, without_effect
 from kb_build.versions.successors import load_successors
 

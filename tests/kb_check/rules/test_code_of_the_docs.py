@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from whole import IS_WHOLE
 
+from kb_build.symbols.flag_names import THEN
 from kb_build.symbols.flags import fillers, new_subscript
-from kb_build.symbols.records import THEN
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

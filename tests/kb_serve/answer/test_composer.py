@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import SEED, classes, of_data, paths
 
+from kb_build.pages.page import Page, Section
 from kb_build.store import Contents, write_base
-from kb_build.symbols.records import Page, Section
 from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.composer import AnswerComposer
 from kb_serve.answer.hit_answers import _names_before_long

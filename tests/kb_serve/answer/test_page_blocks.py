@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.pages.definitions import with_names
-from kb_build.symbols.records import Section
+from kb_build.pages.page import Section
 from kb_serve.answer import pages
 from kb_serve.answer.pages import outline, page_blocks, said_of
 from kb_serve.knowledge_base import KnowledgeBase

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import classes, of_data, paths
 
+from kb_build.symbols.flag_names import BARE_DATA
 from kb_build.symbols.flags import is_stand_in, usual_default
 from kb_build.symbols.lines import written
-from kb_build.symbols.records import BARE_DATA, Deprecation, EnumItem, Parameter, Symbol
+from kb_build.symbols.records import Deprecation, EnumItem, Parameter, Symbol
 from kb_serve.answer.facts.properties import facts
 from kb_serve.answer.render import MarkdownRenderer
 

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import TYPES, steps
 
+from kb_build.pages.page import Page, Section
 from kb_build.store import Contents, write_base
-from kb_build.symbols.records import Link, Page, Section
+from kb_build.symbols.records import Link
 from kb_serve.answer.steps.names.topic_names import TopicNames
 from kb_serve.answer.steps.order import Steps, numbered
 from kb_serve.reader import BaseReader

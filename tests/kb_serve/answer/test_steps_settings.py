@@ -9,8 +9,9 @@ import pytest
 from asking import TYPES, steps
 
 from kb_build.index.passages import address_of
+from kb_build.pages.page import Page, Section
 from kb_build.store import Contents, write_base
-from kb_build.symbols.records import Link, Page, Section
+from kb_build.symbols.records import Link
 from kb_serve.answer.facts.members_in_brief import settings_of
 from kb_serve.reader import BaseReader
 from measurements.steps import do_steps

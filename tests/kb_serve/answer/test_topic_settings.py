@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from kb_build.pages.page import Page, Section
 from kb_build.store import Contents, write_base
-from kb_build.symbols.records import Link, Page, Section, Symbol
+from kb_build.symbols.records import Link, Symbol
 from kb_serve.answer.topic.page_settings import TopicSettings
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.reader import BaseReader

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from kb_build.pages.page import Page, Section
 from kb_build.store import Contents, write_base
-from kb_build.symbols.records import Link, Page, Section
+from kb_build.symbols.records import Link
 from kb_serve.answer.topic.overview import Topics
 from kb_serve.reader import BaseReader
 

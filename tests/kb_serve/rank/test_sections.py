@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from kb_build.index.analysis import stem, words
-from kb_build.symbols.records import Page, Section
+from kb_build.pages.page import Page, Section
 from kb_serve.rank.scoring import Concept
 from kb_serve.rank.sections import asked_section
 

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from kb_build.pages.page import Page, Section
 from kb_build.schema import DOCUMENT_KINDS, DocumentKind
 from kb_build.store import Contents, write_base
-from kb_build.symbols.records import Link, Page, Section
+from kb_build.symbols.records import Link
 from kb_serve.rank.areas import NO_AREA, area_of
 from kb_serve.rank.search import Searcher
 from kb_serve.rank.signals import SIGNALS, Evidence, scores_of

@@ -9,7 +9,7 @@ import bpy
 from ..apart import can_work_apart, sent_apart
 from .assigning import refused_value_items
 from .making import activate, block_makers, called, object_of, remove, scratch_scene
-from .observer import Contexts
+from .observations import Contexts
 
 # The types of objects that have modes which others lack.
 TYPES = ("MESH", "ARMATURE", "CURVE", "CURVES", "GREASEPENCIL", "GPENCIL")

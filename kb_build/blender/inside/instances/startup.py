@@ -8,6 +8,7 @@ from ..classes.rna import path_of
 from ..wire import plain
 from .assigning import refused_value_items
 from .making import called, choices, startup_block
+from .observations import FACTORY, START_UP
 
 # Properties that one Blender crashes on; of one that crashes on more, the editors are left out.
 MOST_CRASHES = 8
@@ -43,7 +44,7 @@ def new_editors():
 def old_editors():
     """The same of the editors that Blender starts with."""
     for area in startup_areas():
-        yield f"start-up {called(area.spaces.active)}", area, area.spaces.active
+        yield f"{START_UP}{called(area.spaces.active)}", area, area.spaces.active
 
 
 def crashes_on(observer, editors):
@@ -77,20 +78,20 @@ def look_at_start(observer):
     scene = bpy.context.scene
     if scene is None:
         return
-    observer.look("start-up scene", scene, is_new=False)
-    observer.look("start-up view layer", bpy.context.view_layer, is_new=False)
+    observer.look(f"{START_UP}scene", scene, is_new=False)
+    observer.look(f"{START_UP}view layer", bpy.context.view_layer, is_new=False)
     for block in (scene.world, *map(startup_block, (bpy.data.materials, bpy.data.lights, bpy.data.cameras))):
         if block is not None:
-            observer.look(f"start-up {called(block)}", block, is_new=False)
+            observer.look(f"{START_UP}{called(block)}", block, is_new=False)
     preferences = bpy.context.preferences
-    observer.look("factory preferences", preferences, vary=False, is_new=False)
+    observer.look(f"{FACTORY}preferences", preferences, vary=False, is_new=False)
     if len(preferences.themes):
-        observer.look("factory theme", preferences.themes[0], vary=False, is_new=False)
+        observer.look(f"{FACTORY}theme", preferences.themes[0], vary=False, is_new=False)
     for editors in (new_editors, old_editors):
         if can_read(observer, editors):
             for label, area, space in editors():
                 observer.look(label, space, vary=False, is_new=False)
-                observer.ask(area, "start-up area", "")
+                observer.ask(area, f"{START_UP}area", "")
 
 
 def write_present(write, observer):

@@ -25,6 +25,8 @@ MOST = 2e6  # beyond it a number may take all memory
 PAST = 1  # how far beyond an end is tried
 NEAR = 0.01  # … as a share of the end, and of one: what turns round at a limit of its own takes no more
 FAR = 1000  # assigned where there is no end
+# Numbers that are assigned by making another instance in its place: what is read of the first one then is anything.
+MADE_ANEW = frozenset({("MovieTrackingMarker", "frame")})
 NAME = "part"
 TWO = 2
 # Parts of an object that a text may name → the collection of them in an object, which some have not.
@@ -63,7 +65,11 @@ def is_kept(struct, name, value, end):
 
 
 def stop(struct, prop, side):
-    """Where a number of an instance stops before one end of its range: two values beyond are read as that; or None."""
+    """Where a number of an instance stops before one end of its range: two values far beyond are read as that, and so
+    is the next one; or None.
+
+    What Blender refuses altogether leaves the number as it was, which need not be next to what is refused.
+    """
     name, before = prop.identifier, getattr(struct, prop.identifier)
     end, far = (prop.hard_min, -FAR) if side == "min" else (prop.hard_max, FAR)
     has_end = limit(end) is not None and abs(end) <= MOST
@@ -72,6 +78,8 @@ def stop(struct, prop, side):
     kept = read_back(struct, name, last)
     is_stop = kept is not None and not same(kept, last)
     is_stop = is_stop and same(kept, read_back(struct, name, type(before)(nearer)))
+    beyond = -PAST if side == "min" else PAST
+    is_stop = is_stop and kept is not None and same(kept, read_back(struct, name, kept + beyond))
     read_back(struct, name, before)
     return kept if is_stop else None
 
@@ -187,7 +195,7 @@ def tried(struct, prop):
         found = {"names": part_named(struct, prop.identifier)}
     else:
         found = {"ends": kept_beyond(struct, prop)}
-        if prop.identifier not in CHOSEN:
+        if prop.identifier not in CHOSEN and (struct.bl_rna.identifier, prop.identifier) not in MADE_ANEW:
             found["stops"] = stops(struct, prop)
     return {name: told for name, told in found.items() if told}
 

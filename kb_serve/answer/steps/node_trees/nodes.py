@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
-from kb_build.symbols.records import PAIRS
+from kb_build.symbols.flag_names import PAIRS
 from kb_serve.answer.facts.members_in_brief import call_of, inputs_of, is_machinery
 from kb_serve.answer.steps.node_trees.items import NodeItems
 from kb_serve.answer.steps.node_trees.links import NodeLinks

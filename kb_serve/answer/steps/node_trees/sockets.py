@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import SIDES
+from kb_build.symbols.flag_names import HIDDEN, PAIRS
 from kb_build.symbols.lines import written
-from kb_build.symbols.records import HIDDEN, PAIRS
 from kb_serve.lookups.symbols import EXTEND
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
-from kb_build.symbols.records import ENDS_WITHOUT
+from kb_build.symbols.flag_names import ENDS_WITHOUT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -6,8 +6,8 @@ import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.symbols.api_names import BLEND_DATA, OBJECT, OPERATORS, TYPES
+from kb_build.symbols.flag_names import FILLED_ON, READ_ONLY
 from kb_build.symbols.flags import empty_when_new, fillers
-from kb_build.symbols.records import FILLED_ON, READ_ONLY
 from kb_serve.answer.steps.names.variable_names import OBJ, class_called
 
 if TYPE_CHECKING:

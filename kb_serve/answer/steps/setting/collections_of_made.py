@@ -6,9 +6,9 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.flag_names import EMPTY
 from kb_build.symbols.flags import empty_when_new
 from kb_build.symbols.lines import mode_needed
-from kb_build.symbols.records import EMPTY
 from kb_serve.answer.facts.members_in_brief import are_settings_seen, call_of, settings_of
 from kb_serve.answer.steps.operators import POINT_CACHE
 

@@ -6,8 +6,8 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import ID, OPERATORS, TYPES
+from kb_build.symbols.flag_names import READ_ONLY
 from kb_build.symbols.flags import fillers
-from kb_build.symbols.records import READ_ONLY
 from kb_serve.answer.facts.members_in_brief import (
     MOST_SETTINGS,
     call_of,

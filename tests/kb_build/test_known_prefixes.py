@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 
-from kb_build.symbols.known_prefixes import KnownPrefixes
+from kb_build.known_prefixes import KnownPrefixes
 
 
 def test_finds_what_a_text_begins_with() -> None:
