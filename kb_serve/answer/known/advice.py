@@ -463,7 +463,11 @@ ADVICE: tuple[Advice, ...] = (
     ),
     Advice(OF_32_BITS, of("bpy_prop_array.foreach_get", "bpy_prop_array.foreach_set")),
     Advice(KEY_OF_SLOTS, of("Action.slots", "ActionSlots"), needs=SLOTTED),
-    Advice(WITH_AT, frozenset(CLASSES)),
+    Advice(
+        WITH_AT,
+        frozenset(CLASSES),
+        about=stems("apply matrix multiply multiplication operator product rotate times transform world"),
+    ),
     Advice(
         _TAGGED,
         of(
