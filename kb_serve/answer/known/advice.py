@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kb_build.symbols.api_names import HANDLERS, TYPES
+from kb_build.symbols.api_names import CHANGING_MODE, HANDLERS, OF_SELECTED, TYPES
 from kb_build.symbols.lines import GET_EVALUATED
 from kb_serve.answer.known.told_of import Advice, of, stems
 from kb_serve.recognise.code.products import CLASSES, WITH_AT
@@ -151,6 +151,20 @@ _RACED = (
     "A rigid body with a mesh for its shape ('CONVEX_HULL', 'MESH') and a modifier that moves with the frame "
     "(Collision, Wave) crashes Blender once in some hundred runs, as it begins to simulate, where its `mesh_source` is "
     "'DEFORM', the default, or 'FINAL': set `ob.rigid_body.mesh_source = 'BASE'` if the shape need not deform."
+)
+_OF_LAYER = (
+    "It works on the objects that are selected in the view layer, and the active one, whichever `temp_override` gives: "
+    "`bpy.ops.object.select_all(action='DESELECT')`, `obj.select_set(True)` and "
+    "`bpy.context.view_layer.objects.active = obj` come before."
+)
+_MODE_OF_LAYER = (
+    "It changes the mode of the view layer's active object, whichever one `temp_override` gives: "
+    "`bpy.context.view_layer.objects.active = obj` comes before."
+)
+_NOT_BY_ALL = (
+    "Some operators work on the view layer's active or selected objects, whatever an override gives, and tell of no "
+    "error: those that change the mode, and "
+    f"{', '.join(f'`{path}`' for path in sorted(OF_SELECTED))}."
 )
 _JOINED = (
     "In a script: `with bpy.context.temp_override(active_object=a, selected_editable_objects=[a, b]): "
@@ -439,6 +453,9 @@ ADVICE: tuple[Advice, ...] = (
     ),
     Advice(_OF_AOV, of("View3DShading.render_pass"), asked=stems("aov")),
     Advice(_JOINED, frozenset({"bpy.ops.object.join"})),
+    Advice(_OF_LAYER, OF_SELECTED),
+    Advice(_MODE_OF_LAYER, CHANGING_MODE, asked=stems("context override")),
+    Advice(_NOT_BY_ALL, of("Context.temp_override")),
     Advice(_NO_BONE, of("ArmatureEditBones.new")),
     Advice(_FLAT, of("MeshPolygon.use_smooth")),
     Advice(_TAB, of("DynamicPaintModifier", "DynamicPaintModifier.ui_type")),

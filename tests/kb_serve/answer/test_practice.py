@@ -975,3 +975,16 @@ def test_smooth_by_angle_is_added_by_an_operator(kb: KnowledgeBase) -> None:
     bpy.ops.mesh.primitive_cube_add()
     bpy.ops.object.shade_auto_smooth(angle=0.5)
     assert [modifier.type for modifier in bpy.context.object.modifiers] == ["NODES"]
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "bpy.ops.object.material_slot_remove_unused in temp_override",
+        "with bpy.context.temp_override(object=o):\n    bpy.ops.object.location_clear()",
+        "bpy.ops.object.mode_set with a context override",
+    ],
+)
+def test_of_operators_that_look_at_no_override_it_is_told(kb: KnowledgeBase, query: str) -> None:
+    assert "view layer" in "\n".join(kb.query(query).notes)
+    assert "temp_override" not in "\n".join(kb.query("bpy.ops.object.mode_set").notes)
