@@ -41,3 +41,24 @@ def interface_part(path: str) -> str:
     """
     found = _OF_INTERFACE.match(path)
     return found[1] if found else ""
+
+
+# Operators that take the active object and the selected ones from the view layer, whichever the context is given.
+# Those that change the mode take the active object alone.
+CHANGING_MODE = frozenset(
+    {
+        "bpy.ops.object.editmode_toggle",
+        "bpy.ops.object.mode_set",
+        "bpy.ops.object.mode_set_with_submode",
+        "bpy.ops.sculpt.sculptmode_toggle",
+    }
+)
+OF_SELECTED = frozenset(
+    {
+        "bpy.ops.object.location_clear",
+        "bpy.ops.object.material_slot_remove_all",
+        "bpy.ops.object.material_slot_remove_unused",
+        "bpy.ops.object.rotation_clear",
+        "bpy.ops.object.scale_clear",
+    }
+)

@@ -12,6 +12,8 @@ ball = bpy.data.objects.new("Ball", mesh)
 bpy.context.collection.objects.link(ball)
 bpy.ops.rigidbody.object_add()  # of the cube, which is active
 ball.rigid_body.mass = 2  # reported: ball.rigid_body is None
+with bpy.context.temp_override(object=ball, active_object=ball, selected_objects=[ball]):
+    bpy.ops.object.location_clear()  # reported: of what is selected in the view layer
 ```
 
 Operators that look for a modifier do nothing where the active object has none of the name: no error tells so. Not
@@ -26,6 +28,7 @@ import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from kb_build.symbols.api_names import OF_SELECTED
 from kb_check.calls.resolved import called_operators, callee_path
 from kb_check.calls.sites import calls_by_node
 from kb_check.findings import Finding
@@ -36,6 +39,7 @@ from kb_check.running.out_of_sight import computes_names
 from kb_check.running.tried import is_tried
 from kb_check.scene.filled_pointers import FILLING, FilledPointers
 from kb_check.scene.held_objects import COPY, Held, HeldObjects
+from kb_check.scene.overridden import overridden
 from kb_check.syntax.bodies import bodies
 from kb_check.syntax.words import asked_names
 
@@ -50,6 +54,7 @@ _ADD = "bpy.ops.object.modifier_add"
 
 
 def _check(script: Script) -> Iterator[Finding]:
+    yield from _overridden_in_vain(script)
     if computes_names(script):
         return
     operators = called_operators(script)
@@ -58,6 +63,25 @@ def _check(script: Script) -> Iterator[Finding]:
             yield from _missed(script, body)
         if any(map(FILLING.fullmatch, operators)):
             yield from _left_empty(script, body)
+
+
+def _overridden_in_vain(script: Script) -> Iterator[Finding]:
+    """Operators on the selected objects that are given others by the context, which the script does not select."""
+    selected = {
+        ast.dump(node.func.value)
+        for node in script.all(ast.Call)
+        if isinstance(node.func, ast.Attribute) and node.func.attr == "select_set"
+    }
+    for call, given in overridden(script, OF_SELECTED):
+        if ast.dump(given) not in selected:
+            obj, path = ast.unparse(given), call.callee.symbol.path
+            yield Finding(
+                RULE.id, "warning", script.span(call.node),
+                f"`{path}` works on the objects that are selected in the view layer, and not on `{obj}`, which "
+                f"`temp_override` gives: `bpy.ops.object.select_all(action='DESELECT')`, `{obj}.select_set(True)` and "
+                f"`bpy.context.view_layer.objects.active = {obj}` come before.",
+                path,
+            )  # fmt: skip
 
 
 def _left_empty(script: Script, body: list[ast.stmt]) -> Iterator[Finding]:

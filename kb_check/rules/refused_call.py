@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _WITH_PROPERTIES = (T, "mathutils.", "bmesh.types.")
+_VALUES = frozenset({"property", "context"})  # kinds of what is read, not called
 # Modules whose classes are written in C and have a signature if, and only if, they can be called.
 _SIGNED = frozenset({"bmesh.types", "gpu.types", "idprop.types", "imbuf.types"})
 _REGISTERING = frozenset({"bpy.utils.register_class", "bpy.utils.unregister_class"})
@@ -277,7 +278,9 @@ def _called_properties(script: Script) -> Iterator[Finding]:
         if row is None or not certain or len(row.symbols) != 1 or not isinstance(owner, Instance):
             continue
         symbol = script.api.symbols.symbol(row.symbols[0])
-        if symbol and symbol.kind == "property" and symbol.type and symbol.owner.startswith(_WITH_PROPERTIES):
+        if not symbol or symbol.kind not in _VALUES or not symbol.type:
+            continue
+        if symbol.owner.startswith(_WITH_PROPERTIES):
             yield Finding(
                 RULE.id, "error", script.name_span(node.func),
                 f"`{symbol.path}` is a property: it is read without `()`.", symbol.path, (), _uncalled(script, node),

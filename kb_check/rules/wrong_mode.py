@@ -33,15 +33,14 @@ In which modes operators run was found by asking each, with objects of all types
 from __future__ import annotations
 
 import ast
-from bisect import bisect_left, bisect_right
 from typing import TYPE_CHECKING
 
 from kb_build.flow.evaluation.given_values import constants
+from kb_build.symbols.api_names import CHANGING_MODE
 from kb_check.calls.sites import calls
 from kb_check.findings import Finding
 from kb_check.modes.run import enters_modes, states
 from kb_check.modes.state import (
-    EDIT_TOGGLE,
     MODE_SET,
     entering,
     former_mode,
@@ -52,24 +51,13 @@ from kb_check.modes.state import (
 from kb_check.rule import Rule
 from kb_check.running.background import is_called_by_others, lines_of_others
 from kb_check.scene.made_here import is_new, is_primitive_mesh
+from kb_check.scene.overridden import overridden
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_check.calls.sites import CallSite
     from kb_check.script import Script
-
-_OF_OBJECTS = frozenset(
-    {
-        "object",
-        "active_object",
-        "selected_objects",
-        "selected_editable_objects",
-        "edit_object",
-        "area",
-        "region",
-    }
-)
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -122,46 +110,14 @@ def _held_modes(script: Script) -> Iterator[Finding]:
 
 def _of_another(script: Script) -> Iterator[Finding]:
     """Calls that change the mode of the active object, and not of the one that the context is given for them."""
-    moving = [call for call in calls(script) if call.callee.symbol.path in (MODE_SET | {EDIT_TOGGLE})]
-    if not moving:
-        return
-    made_active = {
-        ast.dump(node.value)
-        for node in script.all(ast.Assign)
-        if any(isinstance(target, ast.Attribute) and target.attr == "active" for target in node.targets)
-    }
-    for node in script.all(ast.With):
-        given = _object_given(node)
-        if given is None or ast.dump(given) in made_active:
-            continue
-        start = bisect_left(moving, node.lineno, key=_line)
-        end = bisect_right(moving, node.end_lineno or node.lineno, key=_line)
-        for call in moving[start:end]:
-            obj = ast.unparse(given)
-            yield Finding(
-                RULE.id, "warning", script.span(call.node),
-                f"`{call.callee.symbol.path}` changes the mode of the view layer's active object, and not of "
-                f"`{obj}`, which `temp_override` gives. Write `bpy.context.view_layer.objects.active = {obj}` "
-                "before it.",
-                call.callee.symbol.path,
-            )  # fmt: skip
-
-
-def _line(call: CallSite) -> int:
-    return call.node.lineno
-
-
-def _object_given(node: ast.With) -> ast.expr | None:
-    """The active object that ``temp_override`` gives, and no other view layer with it."""
-    for item in node.items:
-        match item.context_expr:
-            case ast.Call(func=ast.Attribute(attr="temp_override"), args=[], keywords=keywords):
-                given = {keyword.arg: keyword.value for keyword in keywords}
-                if given.keys() <= _OF_OBJECTS:
-                    return given.get("active_object", given.get("object"))
-            case _:
-                pass
-    return None
+    for call, given in overridden(script, CHANGING_MODE):
+        obj, path = ast.unparse(given), call.callee.symbol.path
+        yield Finding(
+            RULE.id, "warning", script.span(call.node),
+            f"`{path}` changes the mode of the view layer's active object, and not of `{obj}`, which `temp_override` "
+            f"gives. Write `bpy.context.view_layer.objects.active = {obj}` before it.",
+            path,
+        )  # fmt: skip
 
 
 RULE = Rule("wrong-mode", "error", "An operator in a mode in which Blender refuses it", _check)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kb_build.symbols.api_names import HANDLERS, TYPES
+from kb_build.symbols.api_names import CHANGING_MODE, HANDLERS, OF_SELECTED, TYPES
 from kb_build.symbols.lines import GET_EVALUATED
 from kb_serve.answer.known.told_of import Advice, of, stems
 from kb_serve.recognise.code.products import CLASSES, WITH_AT
@@ -155,6 +155,24 @@ _RACED = (
     "(Collision, Wave) crashes Blender once in some hundred runs, as it begins to simulate, where its `mesh_source` is "
     "'DEFORM', the default, or 'FINAL': set `ob.rigid_body.mesh_source = 'BASE'` if the shape need not deform."
 )
+_OF_LAYER = (
+    "It works on the objects that are selected in the view layer, and the active one, whichever `temp_override` gives: "
+    "`bpy.ops.object.select_all(action='DESELECT')`, `obj.select_set(True)` and "
+    "`bpy.context.view_layer.objects.active = obj` come before."
+)
+_MODE_OF_LAYER = (
+    "It changes the mode of the view layer's active object, whichever one `temp_override` gives: "
+    "`bpy.context.view_layer.objects.active = obj` comes before."
+)
+_EXPORTED = (
+    "It exports the objects that are selected in the view layer, whichever `temp_override` gives: "
+    "`obj.select_set(True)` comes before."
+)
+_NOT_BY_ALL = (
+    "Some operators work on the view layer's active or selected objects, whatever an override gives, and tell of no "
+    "error: those that change the mode, the exporters of OBJ, STL, PLY, glTF and USD, and "
+    f"{', '.join(f'`{path}`' for path in sorted(OF_SELECTED))}."
+)
 _JOINED = (
     "In a script: `with bpy.context.temp_override(active_object=a, selected_editable_objects=[a, b]): "
     "bpy.ops.object.join()`; `a` stays."
@@ -220,11 +238,6 @@ _UNREAD = (
 _UNREAD_LAYERS = (
     "Python reads no pixels of a multilayer EXR: the size of the loaded image is 0 × 0. Write each pass to a file of "
     "its own and load that."
-)
-_OWN_SELECTION = (
-    "An override does not reach everything: `mode_set`, `select_all`, `location_clear` and its like, "
-    "`material_slot_remove_unused`, and the exporters of OBJ, STL, PLY, glTF and USD act on what the view layer itself "
-    "has selected, or active. Set that: `ob.select_set(True)`, `view_layer.objects.active = ob`."
 )
 _LEFT_ALONE = (
     "`frame_set` evaluates what the view layers show: a material or light that nothing visible uses stays as it was, "
@@ -455,23 +468,18 @@ ADVICE: tuple[Advice, ...] = (
     ),
     Advice(_OF_AOV, of("View3DShading.render_pass"), asked=stems("aov")),
     Advice(_MULTIPLIED, of("RigidBodyObject.friction", "RigidBodyObject.restitution")),
-    Advice(_OWN_SELECTION, of("Context.temp_override")),
     Advice(
-        _OWN_SELECTION,
+        _EXPORTED,
         frozenset(
             {
                 "bpy.ops.export_scene.gltf",
-                "bpy.ops.object.location_clear",
-                "bpy.ops.object.material_slot_remove_unused",
-                "bpy.ops.object.mode_set",
-                "bpy.ops.object.select_all",
                 "bpy.ops.wm.obj_export",
                 "bpy.ops.wm.ply_export",
                 "bpy.ops.wm.stl_export",
                 "bpy.ops.wm.usd_export",
             }
         ),
-        asked=stems("override temp_override selected_objects active_object"),
+        asked=stems("override temp_override selected_objects"),
     ),
     Advice(
         _LEFT_ALONE,
@@ -484,6 +492,9 @@ ADVICE: tuple[Advice, ...] = (
         unless=stems("save write"),
     ),
     Advice(_JOINED, frozenset({"bpy.ops.object.join"})),
+    Advice(_OF_LAYER, OF_SELECTED),
+    Advice(_MODE_OF_LAYER, CHANGING_MODE, asked=stems("context override")),
+    Advice(_NOT_BY_ALL, of("Context.temp_override")),
     Advice(_NO_BONE, of("ArmatureEditBones.new")),
     Advice(_FLAT, of("MeshPolygon.use_smooth")),
     Advice(_TAB, of("DynamicPaintModifier", "DynamicPaintModifier.ui_type")),
@@ -508,7 +519,11 @@ ADVICE: tuple[Advice, ...] = (
     ),
     Advice(OF_32_BITS, of("bpy_prop_array.foreach_get", "bpy_prop_array.foreach_set")),
     Advice(KEY_OF_SLOTS, of("Action.slots", "ActionSlots"), needs=SLOTTED),
-    Advice(WITH_AT, frozenset(CLASSES)),
+    Advice(
+        WITH_AT,
+        frozenset(CLASSES),
+        about=stems("apply matrix multiply multiplication operator product rotate times transform world"),
+    ),
     Advice(
         _TAGGED,
         of(

@@ -10,6 +10,7 @@ from kb_serve.answer.known.addon_sentences import ADDON_SENTENCES
 from kb_serve.answer.known.advice import ADVICE
 from kb_serve.answer.known.task_sentences import TASK_SENTENCES
 from kb_serve.recognise.chains.subscripts import NODES_MODIFIER, CustomProperties
+from kb_serve.recognise.message_patterns import is_message
 from simworlds.releases import version_key
 
 if TYPE_CHECKING:
@@ -34,9 +35,11 @@ class Practice:
     def of(self, identifier: str, question: str, *, is_named: bool = True) -> Iterator[str]:
         """Sentences on a symbol, or on what the page with that slug explains, that a question comes to.
 
-        ``is_named``: the question has its name, and was not only found to be like it.
+        ``is_named``: the question has its name, and was not only found to be like it. What a message names it names
+        for another reason than to ask of it.
         """
         said = stems_of(question)
+        is_named = is_named and not is_message(question)
         known = self._of_version
         told = {
             place

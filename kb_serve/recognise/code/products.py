@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import words
@@ -17,7 +18,9 @@ WITH_AT = (
     "Since Blender 2.80 the product of matrices, vectors and quaternions is `a @ b`. `a * b` multiplies element by "
     "element: a TypeError for a matrix and a vector, a wrong result without an error for two matrices or quaternions."
 )
-_IN_A_MESSAGE = "matrix1 * matrix2:"  # in which Blender speaks of ``@``
+_IN_A_MESSAGE = re.compile(
+    r"\b(?:matrix|vector)1? \* (?:matrix|vector)2?:"
+)  # in which Blender speaks of ``@``
 _MATRIX, _VECTOR, _QUATERNION = CLASSES
 _TIMES = frozenset({"*", "*(", "*=", "*=("})
 _WORDS = {
@@ -37,7 +40,7 @@ class Products:
 
     def wrong(self, text: str, chains: Sequence[Chain]) -> Iterator[tuple[str, str]]:
         """(the right product, the class of its left factor) of each that ``*`` does not give."""
-        if _IN_A_MESSAGE in text:
+        if _IN_A_MESSAGE.search(text):
             return
         end, before = 0, None
         for chain in chains:

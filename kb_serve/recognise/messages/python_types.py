@@ -17,8 +17,17 @@ _PATH_OF_FILE = (
     "Where a context is expected the code has a text: `load_pre` and `load_post` call their handlers with the file's "
     "path. Take `bpy.context.{name}` there."
 )
+_OF_WHAT_IT_HOLDS = (
+    "A {written} has no `.{name}`, but what is in it may have (`{path}`): `things[0].{called}`, or `for thing in "
+    "things:` and `thing.{called}`."
+)
+_ONE_VALUE = (
+    "What stands before `.{name}` is one value already, of type `{written}`: take `.{name}` of what it was read from, "
+    "or leave it out."
+)
 PYTHONS = frozenset({"tuple", "list", "str", "dict", "set", "int", "float", "bool", "function", "method"})
 _ROWS = frozenset({"tuple", "list"})
+_SINGLE = frozenset({"int", "float", "bool"})
 # What rows of numbers are made into, the most usual first.
 _OF_NUMBERS = {
     "mathutils.Vector": "a vector",
@@ -49,6 +58,16 @@ class PythonTypes:
             recognition.notes.append(
                 f"A {written} has no `.{name}`; {called} has: `{made}{'()' if entry.kind == 'function' else ''}`."
             )
+        elif written in _ROWS and not hasattr(dict, name) and (member := self._absent.usual(name)):
+            recognition.add(member.path, 0.95, "error message")
+            called = f"{name}(…)" if member.kind == "function" else name
+            recognition.notes.append(
+                _OF_WHAT_IT_HOLDS.format(written=written, name=name, path=member.path, called=called)
+            )
+        elif written in _SINGLE:
+            if member := self._of_numbers(name) or self._absent.usual(name):
+                recognition.add(member.path, 0.95, "error message")
+            recognition.notes.append(_ONE_VALUE.format(name=name, written=written))
         elif written == "str" and self._reader.entry(f"{CONTEXT}.{name}"):
             recognition.add(f"{CONTEXT}.{name}", 0.95, "error message")
             recognition.add(f"{HANDLERS}load_post", 0.93, "error message")

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import COLLECTION, TYPES
 from kb_serve.recognise.elsewhere.elements import elsewhere
+from kb_serve.recognise.messages.absent import as_written
 
 if TYPE_CHECKING:
+    from kb_serve.lookups.records import SymbolEntry
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.elsewhere.elements import Elsewhere
     from kb_serve.recognise.recognition import Recognition
@@ -33,6 +35,11 @@ _ON_OWN = {
 }
 _REGISTERED = "bpy.props.CollectionProperty"
 _IF_OWN = "If it is a `CollectionProperty` of your own: {how}."
+_OF_ELEMENTS = (
+    "Collections have no `{name}`, but what they hold has it, such as `{path}`: `{collection}[0].{called}`, or "
+    "`for one in {collection}:` and `one.{called}`."
+)
+_ON_ELEMENTS = 0.93  # how sure what the elements of collections have by a name is
 _ON_OTHERS = 0.86  # how sure what other collections have by a name is
 _OWN_ALONE = 0.95  # how sure that is where no collection of Blender's has the name
 
@@ -72,6 +79,44 @@ class UnnamedOwners:
             listed = ", ".join(f"`{self._collections[entry.owner]}.{name}`" for entry in having[:_FEW])
             more = f" and {len(having) - _FEW} more" if len(having) > _FEW else ""
             recognition.notes.append(f"This collection has no `{name}`; others have: {listed}{more}.")
+        elif not recognition.removed and name not in _ON_OWN:
+            self._of_elements(name, members, query, recognition)
+
+    def _of_elements(
+        self, name: str, members: list[SymbolEntry], query: str, recognition: Recognition
+    ) -> None:
+        """A member that no collection has, but what collections hold, the weightiest of these.
+
+        Of a collection that code names, another recogniser tells the same.
+        """
+        found = None if self._is_asked_of_one(name, query) else self._weightiest_elements(members)
+        if found is None:
+            return
+        member, collection = found
+        recognition.add(member.path, _ON_ELEMENTS, "error message")
+        called = f"{name}(…)" if member.kind == "function" else name
+        written = as_written(collection)
+        recognition.notes.append(
+            _OF_ELEMENTS.format(name=name, path=member.path, collection=written, called=called)
+        )
+
+    def _is_asked_of_one(self, name: str, query: str) -> bool:
+        """Whether code asks it of a collection that the base knows: ``mesh.vertices.co``."""
+        called = re.findall(rf"\.(\w+)\.{re.escape(name)}\b", query)[:_FEW]
+        return any(
+            entry.type == "collection" and self._reader.member_of(TYPES + entry.target, name)
+            for one in called
+            for entry in self._reader.names.by_name(one)
+        )
+
+    def _weightiest_elements(self, members: list[SymbolEntry]) -> tuple[SymbolEntry, str] | None:
+        """The weightiest of some members that elements of a collection have, and that collection's path."""
+        for member in self._reader.usage.heaviest(members)[:_FEW]:
+            held = {entry.path for entry in self._reader.lineage(member.owner)}
+            for cls, collection in self._elements.items():
+                if cls in held or self._reader.descends(cls, member.owner):
+                    return member, collection
+        return None
 
     def _done_elsewhere(self, name: str, query: str) -> Elsewhere | None:
         """What adds or removes elements of the one collection that code asks for that: ``key_blocks.new("A")``."""
@@ -94,6 +139,17 @@ class UnnamedOwners:
         # Not every version's interface tells of the class.
         found = next(filter(self._reader.entry, (_OWN + meant, f"{COLLECTION}.{meant}")), _REGISTERED)
         recognition.add(found, sure, "error message")
+
+    @cached_property
+    def _elements(self) -> dict[str, str]:
+        """Class of what collections hold → the weightiest property that is such a collection, weightiest first."""
+        sql = "SELECT path, target FROM symbols WHERE type = 'collection' AND target != '' ORDER BY path"
+        rows = self._reader.rows(sql)
+        weights = self._reader.usage.weights([path for path, _ in rows])
+        found: dict[str, str] = {}
+        for path, cls in sorted(rows, key=lambda row: -weights.get(row[0], 0)):
+            found.setdefault(TYPES + cls, path)
+        return found
 
     @cached_property
     def _collections(self) -> dict[str, str]:

@@ -7,10 +7,16 @@ from typing import TYPE_CHECKING
 import pytest
 from statements_in_blender import run_statements
 
+from kb_build.symbols.api_names import CHANGING_MODE, OF_SELECTED
+
 if TYPE_CHECKING:
     from pathlib import Path
 
     from conftest import Check
+
+    from kb_check.checker import Checker
+
+_MODE_SET, _WITH_SUBMODE = "bpy.ops.object.mode_set", "bpy.ops.object.mode_set_with_submode"
 
 _START = """\
 import bpy
@@ -120,3 +126,51 @@ def test_blender_has_none_there_or_some(tmp_path: Path) -> None:
         )
     ]
     assert [name for name, error in zip([*_EMPTY, *_FILLED], answers, strict=True) if error] == [*_EMPTY]
+
+
+_OVERRIDDEN = """
+import bpy
+def cube(name):
+    mesh = bpy.data.meshes.new(name)
+    mesh.materials.append(None)
+    mesh.materials.append(None)
+    mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
+    ob = bpy.data.objects.new(name, mesh)
+    ob.location, ob.rotation_euler, ob.scale = (1, 1, 1), (1, 1, 1), (2, 2, 2)
+    bpy.context.scene.collection.objects.link(ob)
+    return ob
+def state(ob):
+    return ob.matrix_basis.copy(), len(ob.material_slots), ob.mode
+other = cube("other")
+ob = cube("ob")
+for one in bpy.context.scene.objects:
+    one.select_set(one is {active})
+bpy.context.view_layer.objects.active = {active}
+first = state(ob)
+with bpy.context.temp_override(object=ob, active_object=ob, selected_objects=[ob], selected_editable_objects=[ob]):
+    {call}()
+bpy.context.view_layer.update()
+assert state(ob) != first
+"""
+
+
+@pytest.mark.blender
+@pytest.mark.parametrize("path", sorted(OF_SELECTED | CHANGING_MODE - {_MODE_SET, _WITH_SUBMODE}))
+@pytest.mark.parametrize("active", ["ob", "other"])
+def test_what_the_view_layer_has_counts_and_not_the_override(
+    rule_checker: Checker, tmp_path: Path, path: str, active: str
+) -> None:
+    code = _OVERRIDDEN.format(active=active, call=path)
+    ((error, *_),) = run_statements(tmp_path, [code])
+    assert bool(error) is (active == "other")
+    found = [one for one in rule_checker.check(code) if one.symbol == path]
+    assert [one.severity for one in found] == ["warning"] * (active == "other")
+
+
+def test_an_object_that_the_script_selects_may_be_overridden(check: Check) -> None:
+    code = (
+        "import bpy\nob = bpy.data.objects['Cube']\n{before}with bpy.context.temp_override(object=ob):\n"
+        "    bpy.ops.object.location_clear()\n"
+    )
+    assert len(check("other-object", code.format(before=""))) == 1
+    assert not check("other-object", code.format(before="ob.select_set(True)\n"))

@@ -115,3 +115,17 @@ def test_the_active_object_may_be_another_behind_an_operator(check: Check, activ
     assert len(check("refused-call", f"import bpy\n{call}{active}.name = 'Cloth'\n{call}")) == 1
     for between in ("bpy.ops.mesh.primitive_cube_add()", "bpy.context.view_layer.objects.active = other"):
         assert not check("refused-call", f"import bpy\n{call}{between}\n{call}")
+
+
+@pytest.mark.parametrize("member", ["selected_objects", "object", "view_layer", "scene"])
+def test_members_of_the_context_are_values(check: Check, member: str) -> None:
+    (finding,) = check("refused-call", f"import bpy\nbpy.context.{member}()\n")
+    assert finding.message == f"`bpy.types.Context.{member}` is a property: it is read without `()`."
+    assert finding.fix is not None
+
+
+def test_functions_of_the_context_are_called(check: Check) -> None:
+    code = (
+        "import bpy\nbpy.context.copy()\nbpy.context.evaluated_depsgraph_get()\nbpy.context.temp_override()\n"
+    )
+    assert not check("refused-call", code)

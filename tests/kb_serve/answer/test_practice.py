@@ -1032,7 +1032,7 @@ def test_an_override_does_not_choose_what_is_exported(
         r"^\s*(?:vertex |v )?(-?[\d.]+) -?[\d.]+ -?[\d.]+$", path.read_text("utf-8"), re.MULTILINE
     )
     assert {float(point) for point in points} == {1.0}
-    assert "act on what the view layer itself has" in said(
+    assert "selected in the view layer" in said(
         reader, f"bpy.ops.wm.{exporter}", "temp_override selected_objects and export"
     )
 
@@ -1043,7 +1043,7 @@ def test_an_override_does_not_choose_whose_mode_is_set(reader: BaseReader) -> No
         bpy.ops.object.mode_set(mode="EDIT")
     assert (first.mode, second.mode) == ("OBJECT", "EDIT")
     bpy.ops.object.mode_set(mode="OBJECT")
-    assert "`view_layer.objects.active = ob`" in said(reader, f"{TYPES}Context.temp_override")
+    assert "the exporters of OBJ" in said(reader, f"{TYPES}Context.temp_override")
 
 
 def test_a_frame_evaluates_what_is_shown(reader: BaseReader) -> None:
@@ -1077,3 +1077,16 @@ def test_python_reads_no_pixels_of_a_multilayer_image(reader: BaseReader, tmp_pa
     assert "Write each pass to a file" in said(
         reader, f"{TYPES}Image.size", "size of a loaded multilayer exr is 0"
     )
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "bpy.ops.object.material_slot_remove_unused in temp_override",
+        "with bpy.context.temp_override(object=o):\n    bpy.ops.object.location_clear()",
+        "bpy.ops.object.mode_set with a context override",
+    ],
+)
+def test_of_operators_that_look_at_no_override_it_is_told(kb: KnowledgeBase, query: str) -> None:
+    assert "view layer" in "\n".join(kb.query(query).notes)
+    assert "temp_override" not in "\n".join(kb.query("bpy.ops.object.mode_set").notes)

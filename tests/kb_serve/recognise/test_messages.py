@@ -323,6 +323,24 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
         ("AttributeError: 'str' object has no attribute 'location'", '`bpy.data.objects["…"]`'),
         ("AttributeError: type object 'Object' has no attribute 'mine'", "`bpy.types.Object` has no `mine`"),
         (
+            'AttributeError: bpy_prop_collection: attribute "material" not found',
+            "`material_slots[0].material`, or `for one in material_slots:` and `one.material`.",
+        ),
+        (
+            'AttributeError: bpy_prop_collection: attribute "select_set" not found',
+            "such as `bpy.types.Object.select_set`: `objects[0].select_set(…)`",
+        ),
+        (
+            'AttributeError: bpy_prop_collection: attribute "default_value" not found',
+            "what they hold has it, such as `bpy.types.NodeSocket",
+        ),
+        (
+            "AttributeError: 'list' object has no attribute 'location'",
+            "`for thing in things:` and `thing.location`.",
+        ),
+        ("AttributeError: 'float' object has no attribute 'y'", "one value already, of type `float`"),
+        ("AttributeError: 'bool' object has no attribute 'location'", "one value already, of type `bool`"),
+        (
             'AttributeError: bpy_prop_collection: attribute "insert" not found',
             "If it is a `CollectionProperty` of your own: `items.add()`, then `items.move(len(items) - 1, index)`.",
         ),
@@ -1418,3 +1436,22 @@ def test_blender_calls_no_operator_while_it_only_reads() -> None:
     finally:
         bpy.utils.unregister_class(Asking)
     assert "modify blend data in this state (drawing/rendering)" in Asking.said
+
+
+def test_of_a_collection_that_code_names_its_elements_are_told_once(kb: KnowledgeBase) -> None:
+    message = 'ob.data.polygons.normal\nAttributeError: bpy_prop_collection: attribute "normal" not found'
+    notes = kb.query(message).notes
+    assert [note for note in notes if "polygons[0].normal" in note] == [
+        "The elements of `.polygons` have it: `.polygons[0].normal` (`bpy.types.MeshPolygon.normal`)."
+    ]
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        "AttributeError: 'list' object has no attribute 'items'",
+        'AttributeError: bpy_prop_collection: attribute "foo" not found',
+    ],
+)
+def test_what_no_element_has_is_not_said_to_be_of_one(kb: KnowledgeBase, message: str) -> None:
+    assert not [note for note in kb.query(message).notes if "[0]." in note]

@@ -230,6 +230,26 @@ ob.matrix_world = mathutils.Matrix.Identity(3)
 ob.rotation_euler + ob.rotation_euler
 registered("Panel", bl_space_type="PROPERTIES", bl_region_type="TOOLS")
 bpy.ops.extensions.package_install(repo_index=0, pkg_id="x")
+(1, 2, 3) * 0.5
+ob.hide_render()
+ob.location.x()
+scene.frame_current()
+[ob]()
+ob.name()
+ob.users_collection()
+ob.location()
+ob.matrix_world()
+ob.rotation_euler()
+bpy.data.materials[0].diffuse_color()
+ob.bound_box[0] * 0.5
+"%.2f" % ob.location
+f"{ob.location:.2f}"
+round(ob.location, 2)
+abs(ob.location)
+mathutils.Vector((0, 0, 0)).angle(ob.scale)
+mathutils.Matrix.Scale(0, 4).inverted()
+mathutils.Matrix.Identity(3) @ mathutils.Vector((1, 2, 3, 4))
+mathutils.Vector((1, 2, 3, 4)) @ mathutils.Matrix.Identity(3)
 """.splitlines()
 _RUN = """
 import json, os, sys, tempfile

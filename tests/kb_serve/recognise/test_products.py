@@ -37,3 +37,24 @@ def test_the_message_of_a_wrong_product_leads_to_the_right_one(kb: KnowledgeBase
 @pytest.mark.parametrize("query", ["vec * 2.0", "a * b", "obj.location * scale", "obj.scale * 3"])
 def test_other_products_are_left_alone(kb: KnowledgeBase, query: str) -> None:
     assert not [note for note in kb.query(query).notes if "@" in note]
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        "TypeError: mathutils.Vector(): sequence index 2 expected a number, found 'str' type, ",
+        "TypeError: mathutils.Quaternion(): angle must be a real number, not 'tuple'",
+        "TypeError: 'Vector' object is not callable",
+        "ValueError: matrix * vector: len(matrix.col) and len(vector) must be the same, except for 4x4 matrix * 3D "
+        "vector.",
+    ],
+)
+def test_other_messages_of_the_classes_are_not_answered_with_the_product(
+    kb: KnowledgeBase, message: str
+) -> None:
+    assert WITH_AT not in kb.query(message).text
+
+
+@pytest.mark.parametrize("query", ["mathutils.Vector", "multiply a matrix with a vector"])
+def test_who_asks_of_the_class_or_of_products_is_told(kb: KnowledgeBase, query: str) -> None:
+    assert WITH_AT in kb.query(query).notes

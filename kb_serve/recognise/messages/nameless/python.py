@@ -21,9 +21,30 @@ _OF_OPERATORS = (
     "`bpy.ops.mesh.primitive_cube_add()`, and in the next line `cube = bpy.context.object`."
 )
 _WHOLE = (
-    "An index, and how often something is repeated, is a whole number; coordinates and what `/` gives are floats: "
-    "`int(value)`, `round(value)`, `count // 2`."
+    "An index is a whole number; coordinates and what `/` gives are floats: `int(value)`, `round(value)`, "
+    "`count // 2`."
 )
+_REPEATED = (
+    "`*` repeats a tuple, list or text, and takes a whole number for that: `count // 2`, `int(value)`. To multiply the "
+    "numbers in it, make it a vector: `Vector(value) * 0.5`."
+)
+_VALUE_CALLED = (
+    "What stands before `()` is a value, not a function: a property is read without `()`. Nor is a name of Python's a "
+    'function any more once the script has used it for a variable (`max = 3`, `str = "a"`).'
+)
+# The type of what is called → the class, or where scripts of Blender mostly have a value of Python's from.
+_CALLED = {
+    "bool": f"{T}Object.hide_render",
+    "float": "mathutils.Vector.x",
+    "int": f"{T}Scene.frame_current",
+    "list": "bpy.context.selected_objects",
+    "str": f"{T}ID.name",
+    "tuple": f"{T}Object.users_collection",
+    "Vector": "mathutils.Vector",
+    "Matrix": "mathutils.Matrix",
+    "Euler": "mathutils.Euler",
+    "bpy_prop_array": f"{T}bpy_prop_array",
+}
 _PARTS = (
     "a location has three numbers (`x, y, z = obj.location`), a colour four, `vector.xy` two; `scene.ray_cast(…)` "
     "gives six values, `obj.ray_cast(…)` and `obj.closest_point_on_mesh(…)` four."
@@ -204,12 +225,19 @@ PYTHON = (
         "JSON keeps numbers, texts, lists and dictionaries: `list(obj.location)`, `[list(row) for row in "
         "obj.matrix_world]`, and the name of a data-block, `obj.name`.",
     ),
+    NamelessMessage(
+        ("indices must be integers or slices, not float",),
+        ("mathutils.Vector", COLLECTION),
+        _WHOLE,
+    ),
+    NamelessMessage(
+        ("can't multiply sequence by non-int of type 'float'",),
+        ("mathutils.Vector",),
+        _REPEATED,
+    ),
     *(
-        NamelessMessage((part,), ("mathutils.Vector", COLLECTION), _WHOLE)
-        for part in (
-            "indices must be integers or slices, not float",
-            "can't multiply sequence by non-int of type 'float'",
-        )
+        NamelessMessage((f"'{called}' object is not callable",), (path,), _VALUE_CALLED)
+        for called, path in _CALLED.items()
     ),
     NamelessMessage(
         (" does not support string lookups",),

@@ -13,6 +13,10 @@ _IS_NONE = (
     "One side is None: `normalize()`, `invert()`, `transpose()`, `rotate()` and the like change their own value and "
     "return nothing. `normalized()`, `inverted()`, `transposed()` return another one."
 )
+_ONE_BY_ONE = (
+    "A vector is no single number: take its length, `v.length`, or each number by itself, `tuple(round(n, 2) for n in "
+    'v)`, `[abs(n) for n in v]`, `f"{v.x:.2f}"`.'
+)
 _IS_ARRAY = (
     "Numbers that a property holds are not always a vector (the corners of `bound_box`, colours of four numbers are "
     "none): make one, `matrix @ Vector(corner)`. All corners of an object in the world: "
@@ -45,6 +49,33 @@ VECTORS = (
         _IS_ARRAY,
     ),
     NamelessMessage(
+        ("unsupported operand type(s) for ", "'bpy_prop_array'"),
+        ("mathutils.Vector", f"{T}bpy_prop_array"),
+        "Numbers that a property holds are not always a vector (the corners of `bound_box`, colours of four numbers "
+        "are none): make one, `Vector(corner) * 0.5`.",
+    ),
+    *(
+        NamelessMessage((part,), ("mathutils.Vector.length", "mathutils.Vector"), _ONE_BY_ONE)
+        for part in (
+            "must be real number, not Vector",
+            "unsupported format string passed to Vector.__format__",
+            "type Vector doesn't define __round__ method",
+            "bad operand type for abs(): 'Vector'",
+        )
+    ),
+    NamelessMessage(
+        ("zero length vectors have no valid angle",),
+        ("mathutils.Vector.angle",),
+        "One of the vectors has no length, and so no direction: `a.angle(b, 0.0)` gives the second value then, instead "
+        "of an error.",
+    ),
+    NamelessMessage(
+        ("matrix does not have an inverse",),
+        ("mathutils.Matrix.inverted_safe", "mathutils.Matrix.inverted"),
+        "A scale of 0 leaves nothing to invert: `matrix.inverted_safe()` gives a matrix nevertheless, "
+        "`matrix.inverted(None)` None.",
+    ),
+    NamelessMessage(
         ("multiplication: not supported between ", "'NoneType'"),
         ("mathutils.Matrix.inverted", "mathutils.Vector.normalized"),
         _IS_NONE,
@@ -59,6 +90,15 @@ VECTORS = (
         ("mathutils.Matrix.to_3x3", "mathutils.Matrix.to_4x4"),
         "One matrix is 3×3, the other 4×4: `m.to_4x4()` makes the first kind the second, `m.to_3x3()` the other way "
         "round, without the translation.",
+    ),
+    *(
+        NamelessMessage(
+            (part,),
+            ("mathutils.Vector.to_3d", "mathutils.Vector.to_4d", "mathutils.Matrix.to_3x3"),
+            "A vector has as many numbers as the matrix has rows, or three where that is 4×4: `v.to_3d()`, "
+            "`v.to_4d()`, `m.to_3x3()`, `m.to_4x4()`.",
+        )
+        for part in ("matrix * vector: len(matrix.col) and len(vector)", "vector * matrix: ")
     ),
     NamelessMessage(
         ("Can't have the same axis for track and up",),
