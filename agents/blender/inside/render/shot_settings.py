@@ -208,6 +208,7 @@ def settings_for(scene, shot, samples, path):
         yield scene.cycles, "use_denoising", shot["denoise"]
         if _denoises_slowly(scene, shot):
             yield scene.cycles, "denoising_quality", "BALANCED"
+            yield scene.cycles, "denoising_prefilter", "FAST"
     if samples is not None and samples != _samples_of(scene, shot["engine"]):
         yield _samples_setting(scene, shot["engine"], samples)
 
