@@ -100,7 +100,9 @@ def fitted(
         lowered.append(f"{width}×{height} instead of {planned.width}×{planned.height}")
     cost = frame.seconds(samples, scale)
     if cost * planned.frames > seconds:
-        lowered.append(f"about {max(1, math.floor(seconds / cost))} of {planned.frames} frames")
+        lowered.append(
+            f"about {max(1, math.floor(seconds / cost))} of {planned.frames} frames, the others repeated"
+        )
     expected = min(seconds, cost * planned.frames)
     return FilmSettings(width, height, samples, planned.frames, expected, ", ".join(lowered))
 

@@ -218,6 +218,10 @@ _FALLS = (
     "Cloth does not use its own `gravity`, whatever it is: while `scene.use_gravity` is on it falls by "
     "`scene.gravity` times the cloth's `settings.effector_weights.gravity`."
 )
+_DRAGGED = (
+    "A sheet falls no faster than 23.5 × `mass` / `air_damping` metres a second at 24 frames a second, whatever its "
+    "size and faces: gravity × fps / 10 × `mass` / `air_damping`, with the mass of a vertex."
+)
 _BAKED = (
     "What is left out is not the default that is listed here, but what `scene.render.bake` has, where it has a setting "
     "of that name: `target`, `margin`, `use_clear`, `normal_space` …"
@@ -313,6 +317,7 @@ ADVICE: tuple[Advice, ...] = (
     Advice(_RULED, frozenset({"bpy.ops.boid.rule_add"})),
     Advice(_NO_KEY, of("RetimingKeys.add")),
     Advice(_NO_RETIMING, of("RetimingKey", "RetimingKey.timeline_frame", "RetimingKeys", "RetimingKeys.add")),
+    Advice(_DRAGGED, of("ClothSettings.air_damping")),
     Advice(_FALLS, of("ClothSettings.gravity")),
     Advice(_BAKED, frozenset({"bpy.ops.object.bake"})),
     Advice(_BAKED_BY, frozenset({"bpy.ops.object.bake"}) | of("CyclesRenderSettings.bake_type")),

@@ -63,21 +63,21 @@ def test_then_the_picture_gets_smaller_and_stays_even() -> None:
 def test_what_fits_at_no_size_says_that_frames_will_be_left_out() -> None:
     film = fitted(PLANNED, FrameTime(0.0, 20.0, 5.0), 100)
     assert (film.width, film.height, film.samples) == (480, 270, 4)
-    assert film.lowered.endswith("about 10 of 100 frames")
+    assert film.lowered.endswith("about 10 of 100 frames, the others repeated")
     assert film.seconds == 100
 
 
 def test_no_pixels_or_samples_are_given_up_where_that_saves_little() -> None:
     film = fitted(PLANNED, FrameTime(10.0, 1.0, 0.015), 600)
     assert (film.width, film.height, film.samples) == (960, 540, 64)
-    assert film.lowered == "about 50 of 100 frames"
+    assert film.lowered == "about 50 of 100 frames, the others repeated"
     assert film.seconds == 600
 
 
 def test_samples_that_take_most_of_the_time_are_lowered_though_the_picture_is_not() -> None:
     film = fitted(PLANNED, FrameTime(10.0, 0.5, 0.2), 1000)
     assert (film.width, film.samples) == (960, 16)
-    assert film.lowered == "16 samples instead of 64, about 72 of 100 frames"
+    assert film.lowered == "16 samples instead of 64, about 72 of 100 frames, the others repeated"
 
 
 def test_a_busy_moment_costs_no_quality_that_there_is_time_for() -> None:
