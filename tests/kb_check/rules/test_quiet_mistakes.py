@@ -339,6 +339,20 @@ def test_handlers_that_add_up_are_found(check: Check) -> None:
     assert len(check("runs-twice", "import bpy\nbpy.types.VIEW3D_MT_add.append(print)\n")) == 1
 
 
+def test_a_guard_that_asks_for_a_function_of_this_run_is_in_vain(check: Check) -> None:
+    code = """
+    import bpy
+    def follow(scene):
+        pass
+    if follow not in bpy.app.handlers.frame_change_pre:
+        bpy.app.handlers.frame_change_pre.append(follow)
+    """
+    [finding] = check("runs-twice", code)
+    assert "`follow not in bpy.app.handlers.frame_change_pre` is true each time" in finding.message
+    looked_into = code + "print(len(bpy.app.handlers.frame_change_pre))\n"
+    assert check("runs-twice", looked_into.replace("print", "    print")) == []
+
+
 @pytest.mark.parametrize(
     "code",
     [
