@@ -484,7 +484,7 @@ ADVICE: tuple[Advice, ...] = (
                 "bpy.ops.wm.usd_export",
             }
         ),
-        asked=stems("override temp_override selected_objects"),
+        asked=stems("override temp_override"),
     ),
     Advice(
         _LEFT_ALONE,

@@ -37,10 +37,6 @@ _LIMITED = (
     "`soft_min` and `soft_max`, which are of its class; an input of a group has its own: "
     '`tree.interface.items_tree["Size"].min_value`, `max_value`.'
 )
-_BESIDE = (
-    "In a BMesh: `vert.link_edges` and `vert.link_faces` are what a vertex is part of, `edge.link_faces` the faces of "
-    "an edge, `edge.other_vert(vert)` its other end: `[edge.other_vert(vert) for edge in vert.link_edges]`."
-)
 _EVALUATED = "`fcurve.evaluate(frame)` is the value of an F-Curve at a frame, between its keys, too."
 _UNDER_MOUSE = (
     "What is under the mouse, in an operator's `modal()`: `place = event.mouse_region_x, event.mouse_region_y`, "
@@ -52,18 +48,6 @@ _UNDER_MOUSE = (
 _OBJECTS = stems("object objects")
 _NODES = stems("geometry modifier node nodes")
 TASK_SENTENCES: tuple[Advice, ...] = (
-    Advice(
-        _BESIDE,
-        wherever=(
-            stems("adjacent attached connected link linked neighbor neighbors neighbour neighbours"),
-            stems("edge edges face faces vert verts vertex vertices"),
-            stems("find get how list of to"),
-        ),
-        unless=stems(
-            "collection constraint delete dissolve geometry island material node nodes object select selected uv "
-            "weight"
-        ),
-    ),
     Advice(
         _EVALUATED,
         wherever=(stems("f-curve fcurve fcurves"), stems("evaluate value values"), stems("frame frames")),

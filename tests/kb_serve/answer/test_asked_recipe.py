@@ -65,7 +65,7 @@ def test_the_recipe_comes_first_with_what_it_takes(kb: KnowledgeBase, ours: list
         ),
         ("distance between two objects", "Measure the distance between two objects"),
         ("get bounding box in world coordinates", "Get the bounding box of an object in the world"),
-        ("how to rotate object around world axis", "Move, turn and scale an object in the world"),
+        ("how to rotate object around world axis", "Rotate an object around a point or a world axis"),
         ("camera look at a point", "Aim a camera or light at a point"),
         ("get node by type in a material", "Find a node of a material by its type and set its inputs"),
         ("how to make a material transparent in eevee", "Make a material transparent"),

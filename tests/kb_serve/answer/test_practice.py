@@ -10,6 +10,7 @@ import sys
 import warnings
 import wave
 from itertools import pairwise
+from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -1002,7 +1003,7 @@ def test_two_bodies_bounce_by_the_product(reader: BaseReader) -> None:
 @pytest.mark.parametrize(
     ("mass", "air", "fps", "faces"), [(0.03, 1, 24, 2), (0.01, 2, 24, 4), (0.01, 1, 48, 2)]
 )
-def test_a_sheet_falls_no_faster_than_its_drag_allows(
+def test_a_sheet_falls_as_fast_as_its_drag_allows(
     reader: BaseReader, mass: float, air: float, fps: int, faces: int
 ) -> None:
     bpy.context.scene.render.fps = fps
@@ -1010,10 +1011,10 @@ def test_a_sheet_falls_no_faster_than_its_drag_allows(
     settings = bpy.context.object.modifiers.new("Cloth", "CLOTH").settings
     settings.mass, settings.air_damping = mass, air
     heights: list[float] = []
-    for frame in range(1, 40):
+    for frame in range(1, 60):
         bpy.context.scene.frame_set(frame)
         shape = bpy.context.object.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
-        heights.append(shape.vertices[0].co.z)
+        heights.append(fmean(vertex.co.z for vertex in shape.vertices))
     fastest = (heights[-2] - heights[-1]) * fps
     assert fastest == pytest.approx(9.81 * fps / 10 * mass / air, rel=0.02)
     assert "23.5 × `mass` / `air_damping`" in said(reader, f"{TYPES}ClothSettings.air_damping")

@@ -204,17 +204,6 @@ def test_a_driver_calls_a_function_of_ones_own(kb: KnowledgeBase) -> None:
     assert ob.location.x == 8
 
 
-def test_what_is_beside_a_vertex_is_linked(kb: KnowledgeBase) -> None:
-    text = told(kb, "get the edges connected to a vertex")
-    bm = bmesh.new()
-    bm.from_mesh(cube().data)
-    bm.verts.ensure_lookup_table()
-    vert = bm.verts[0]
-    edge = vert.link_edges[0]
-    assert [len(eval(code, {"vert": vert, "edge": edge})) for code in CODE.findall(text)[:3]] == [3, 3, 2]
-    assert len(eval(CODE.findall(text)[-1], {"vert": vert})) == 3
-
-
 def test_an_f_curve_has_a_value_at_any_frame(kb: KnowledgeBase) -> None:
     text = told(kb, "get the value of an fcurve at a frame")
     ob = cube()

@@ -402,6 +402,7 @@ def test_refuses_a_second_supervisor_for_a_run(hardy: LiveSession) -> None:
 
 
 def test_a_session_that_is_refused_a_run_takes_nothing_from_the_one_that_has_it(hardy: LiveSession) -> None:
+    hardy.blender.take_note()  # of the tests before
     folder = hardy.blender.folder
     (folder.root / PRIVATE / "temporary").touch()
     half = folder.root / "workspace" / f"tower{HALF_WRITTEN}"
