@@ -26,6 +26,7 @@ from kb_build.flow.values.types import UNKNOWN, Resolution, literal_text
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import NODE_FAMILIES, never_taken
 from kb_build.symbols.paths import argument_of, last_name, plain_path, split_path
+from kb_check.calls.missing_arguments import calls_with_too_little
 from kb_check.calls.sites import calls_not_ready_for
 from kb_check.findings import Finding
 from kb_check.names.lacking import lacking_finding
@@ -53,7 +54,7 @@ _NAMED_IN = {"unit_system": f"{_UNITS}.systems", "unit_category": f"{_UNITS}.cat
 
 def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("value"):
-        if _may_be_of_another(script, row):
+        if _may_be_of_another(script, row) or row.node in _at_unsure_places(script):
             continue
         # Of several classes that a thing may be of, the one with the value that may be meant, or else the heaviest.
         weights = script.names.reader.usage.weights([_class_of(path) for path in row.missing])
@@ -73,6 +74,12 @@ def _check(script: Script) -> Iterator[Finding]:
     yield from _of_trees(script)
     yield from _of_icons(script)
     yield from _of_units(script)
+
+
+@once_per_script
+def _at_unsure_places(script: Script) -> set[ast.expr]:
+    """What is given by its place to calls that lack an argument: it may be meant for another parameter."""
+    return {given for call, _ in calls_with_too_little(script) for given in call.node.args}
 
 
 def _of_units(script: Script) -> Iterator[Finding]:

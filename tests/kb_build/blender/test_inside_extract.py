@@ -394,6 +394,20 @@ def test_links_lead_to_symbols_that_exist(extract: Extract, symbols: dict[str, S
         assert link.kind == "manual" or link.target in symbols, link
 
 
+@pytest.mark.parametrize(
+    ("path", "parent"),
+    [
+        ("bpy_extras.node_shader_utils.PrincipledBSDFWrapper", "ShaderWrapper"),
+        ("freestyle.types.FEdge", "Interface1D"),
+        ("aud.Sequence", "Sound"),
+    ],
+)
+def test_a_base_that_follows_its_class_in_the_alphabet_is_known(
+    symbols: dict[str, Symbol], path: str, parent: str
+) -> None:
+    assert symbols[path].base == f"{path.rpartition('.')[0]}.{parent}"
+
+
 def test_everything_has_an_owner_that_exists_and_a_path_of_its_own(extract: Extract) -> None:
     paths = [symbol.path for symbol in extract.symbols]
     assert len(paths) == len(set(paths))

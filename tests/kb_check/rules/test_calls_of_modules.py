@@ -11,7 +11,7 @@ import pytest
 from statements_in_blender import run_statements
 from told_by_blender import told_by_blender
 
-from kb_check.rules.missing_argument import IN_PYTHON
+from kb_check.calls.missing_arguments import IN_PYTHON
 
 if TYPE_CHECKING:
     from pathlib import Path

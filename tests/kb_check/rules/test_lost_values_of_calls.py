@@ -73,3 +73,15 @@ def f(how):
     bpy.ops.outliner.show_one_level(given, open=False)
 """
     assert rule_checker.check(code) == []
+
+
+def test_what_is_given_by_its_place_is_left_to_the_argument_that_lacks(rule_checker: Checker) -> None:
+    code = (
+        "import bpy\n"
+        "tree = bpy.data.node_groups.new('Films', 'CompositorNodeTree')\n"
+        "node = tree.nodes.new('CompositorNodeOutputFile')\n"
+        "node.file_output_items.new('Depth')\n"
+        "node.file_output_items.new('Depth', 'Depth')\n"
+    )
+    found = [(finding.span.line, finding.rule) for finding in rule_checker.check(code)]
+    assert found == [(4, "missing-argument"), (5, "unknown-value")]

@@ -209,9 +209,12 @@ def write_member(write, owner, name, value, flags=()):
     )
 
 
-def base_path(cls):
-    """Where a class's base is written; nothing where it is not: Python's own, unnamed helpers of the class."""
-    return WRITTEN.get(cls.__mro__[1], "") if len(cls.__mro__) > 1 else ""
+def base_path(cls, owner):
+    """Where a class's base is written, or will be, beside it; nothing where it is not: Python's own, private ones."""
+    base = cls.__base__
+    if base in WRITTEN or base is None or base.__module__ != cls.__module__ or base.__name__.startswith("_"):
+        return WRITTEN.get(base, "")
+    return f"{owner}.{base.__name__}" if getattr(load(owner), base.__name__, None) is base else ""
 
 
 def annotated(hint):
@@ -240,7 +243,7 @@ def write_class(write, path, cls, told=""):
         owner=owner,
         docstring=inspect.getdoc(cls) if "__doc__" in vars(cls) and cls.__doc__ else told,
         signature=signature(cls) if cls.__module__ != "builtins" and "__init__" in vars(cls) else "",
-        base=base_path(cls),
+        base=base_path(cls, owner),
         group="data",
         flags=flags_of(cls),
     )
