@@ -38,7 +38,16 @@ PARTS = (
         "expressions",
         "denials",
     ),
-    *("steps", "check_blender", "check_truth", "check_versions", "planted", "pyright", "migrate"),
+    *(
+        "steps",
+        "check_blender",
+        "check_packages",
+        "check_truth",
+        "check_versions",
+        "planted",
+        "pyright",
+        "migrate",
+    ),
     *("latency", "server", "schemas", "builds", "blender", "verifier", "audits"),
 )
 LONG = ("soak",)  # only where they are asked for

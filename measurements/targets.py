@@ -160,6 +160,7 @@ _ROWS = (
     Target("steps_done", "steps of topics that Blender does in a new scene", "share", 0.99, True),
     Target("flow_speed", "types flow through 1,000 lines", "ms", 150),
     Target("check_false", "Blender's own scripts: findings that Blender does not prove", "count", 0),
+    Target("packages_false", "packages of others: errors that Blender does not prove", "count", 0),
     Target("check_inside", "own scripts that run inside Blender: findings", "count", 0),
     Target("check_all", "checking all of them", "s", 25),
     Target("check_speed", "checking 1,000 of their lines", "ms", 150),
