@@ -11,6 +11,7 @@ from kb_serve.recognise.chains.chain_starts import ROOTS
 from kb_serve.recognise.chains.chains import ChainStep
 from kb_serve.recognise.chains.subscripts import MODIFIER_PROPERTIES, PROPERTIES_OF_MODIFIER
 from kb_serve.recognise.chains.variables import OTHERWISE, USUAL, is_guess, usual_classes
+from kb_serve.recognise.code.python_methods import is_of_texts
 from kb_serve.recognise.elsewhere.elements import ADDING, elsewhere, meant_by_key
 from kb_serve.recognise.elsewhere.holders import of_collection
 from kb_serve.recognise.elsewhere.members_within import of_elements
@@ -138,6 +139,12 @@ class BrokenExpressions:
             or (chain.quoted and chain.root != "bpy")
             # ``bpy.types.Scene.my_property = …``
             or (is_definition and chain.dotted.startswith((TYPES, "types.")) and len(resolved.symbols) == 1)
+            # ``value.upper()``: a variable holds a text, whatever it is called.
+            or (
+                chain.root not in ROOTS
+                and len(resolved.symbols) == 1
+                and is_of_texts(resolved.missing, self._reader)
+            )
             # A variable called ``context`` may hold a dictionary.
             or (resolved.missing.startswith("[") and len(resolved.symbols) == 1 and chain.root != "bpy")
             or (owner is not None and _may_have(owner, chain, resolved.missing))

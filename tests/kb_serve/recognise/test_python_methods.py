@@ -56,3 +56,13 @@ def test_a_name_that_no_text_has_is_still_missing(kb: KnowledgeBase) -> None:
     assert "`bpy.app.version_string` has no `spilt`" in " ".join(
         kb.query("bpy.app.version_string.spilt").notes
     )
+
+
+@pytest.mark.parametrize("code", ["value.upper()", "node.upper()", "key.lower()", "obj.strip()"])
+def test_a_variable_that_does_what_texts_do_holds_one(kb: KnowledgeBase, code: str) -> None:
+    assert "has no" not in "\n".join(kb.query(code).notes)
+
+
+@pytest.mark.parametrize("code", ["obj.append(1)", "image.shape"])
+def test_what_lists_and_arrays_do_is_looked_at(kb: KnowledgeBase, code: str) -> None:
+    assert "has no" in "\n".join(kb.query(code).notes)
