@@ -49,6 +49,7 @@ _KNOWN_OF = 3  # hits for a description among which what one has to know of them
 _NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
 _KNOWN_OF_A_PART = 1
 _SETTINGS = 2  # of a topic that are hits before its classes
+_MUCH, _MUCH_USED = 13.5, 2  # weight of a member that most scripts use, and how many such are told
 _LESS = 0.02  # score from one id to the next, where nothing was ranked
 _OPERATOR = re.compile(r"bpy\.ops\.\w+\.\w+")
 
@@ -103,7 +104,7 @@ class AnswerComposer:
         is_name = (" " not in text or "[" in text) and self._reader.entry(text)
         topic = "" if is_name or ranking.recognition.removed else self._topics.find(text)
         if topic:
-            return self._overview(topic, ranking, limit, self._recipe(text))
+            return self._overview(topic, ranking, limit, self._recipe(text), self._much_used(text))
         names = [match for match in ranking.recognition.matches if match.sure >= SURE]
         is_named = ranking.named or any(match.why != "enum item" for match in names)
         if not is_named and (parts := parts_of(text)):
@@ -254,23 +255,38 @@ class AnswerComposer:
             without = " and the ".join(missing)
             yield f"This base was built without the {without}; `simworlds kb info {minor}` says why."
 
-    def _overview(self, topic: str, ranking: Ranking, limit: int, recipe: AskedRecipe | None = None) -> Draft:
-        """What there is on a topic; a page with the title of a task is told behind the recipe for that."""
+    def _much_used(self, text: str) -> list[str]:
+        """The members that scripts use much and that are called by a word: of ``rotation``, an object's."""
+        named = self._reader.names.members_named_after(text.lower()) if text.isidentifier() else []
+        return [entry.path for entry in self._reader.usage.heaviest(named, _MUCH)[:_MUCH_USED]]
+
+    def _overview(
+        self,
+        topic: str,
+        ranking: Ranking,
+        limit: int,
+        recipe: AskedRecipe | None = None,
+        members: Sequence[str] = (),
+    ) -> Draft:
+        """What there is on a topic, with the ``members`` that are called so; a page with the title of a task is told
+        behind the recipe for that.
+        """
         overview = self._topics.overview(topic)
-        lead = overview.settings[:_SETTINGS]
+        lead = (*members[:1], *overview.settings[:_SETTINGS])
         ids = dict.fromkeys((topic, *lead, *overview.members, *(row.id for row in ranking.ranked)))
         hits = hits_of(_in_given_order([*ids][:limit], "topic"), self._reader)
         notes = (*self._source_notes(ranking, hits), *self._on_steps(overview))
+        head = _with_members(overview.first, [*self._lines.by_path(members)])
         if not overview.is_single:
-            return draft_of("page", hits, notes, overview.blocks)
-        told = "".join(block.text for block in overview.first)
+            return draft_of("page", hits, notes, (*head, *overview.more))
+        told = "".join(block.text for block in head)
         rows = [row for row in self._listed(ranking, limit) if row.id != topic and not _is_told(row.id, told)]
         page = (
             () if overview.says_how else [*self._blocks.excerpt(hits[0], RankedId(topic, 1.0, "topic"))][1:]
         )
         blocks = (
             *_recipe_block(recipe if recipe and recipe.is_said else None),
-            *overview.first,
+            *head,
             *page,
             *self._lines.further(hits_of(rows, self._reader), rows),
             *overview.more,
@@ -287,6 +303,12 @@ def _one_way(known: Sequence[str], recipe: AskedRecipe | None) -> tuple[Sequence
 
 def _recipe_block(recipe: AskedRecipe | None) -> list[AnswerBlock]:
     return [AnswerBlock(recipe.text, "recipe")] if recipe else []
+
+
+def _with_members(blocks: Sequence[AnswerBlock], lines: Sequence[str]) -> list[AnswerBlock]:
+    """The blocks on a topic with the lines of members that are called so behind the first, which says what it is."""
+    named = [AnswerBlock("\n".join(("**Most used**", *lines)), "members called so")] if lines else []
+    return [*blocks[:1], *named, *blocks[1:]]
 
 
 def _with_recipe(

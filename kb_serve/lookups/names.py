@@ -35,6 +35,13 @@ class NameLookups:
         rows = self._file.rows(f"SELECT {ENTRY_COLUMNS} FROM symbols WHERE name = ? ORDER BY id", name)
         return tuple(SymbolEntry._make(row) for row in rows)
 
+    def members_named_after(self, word: str) -> list[SymbolEntry]:
+        """The properties and functions whose names are a word, or begin with it: ``rotation_euler``."""
+        sql = f"""SELECT {ENTRY_COLUMNS} FROM symbols WHERE name >= ? AND name < ? AND grp != 'ui'
+            AND kind IN ('property', 'function') AND (name = ? OR name > ?) ORDER BY id"""
+        rows = self._file.rows(sql, word, f"{word}`", word, f"{word}_")
+        return [SymbolEntry._make(row) for row in rows]
+
     def enum_owners(self, key: str) -> list[tuple[str, str, str]]:
         """(owner, identifier, name) for every enumeration that has the item."""
         return self._file.rows("SELECT owner, identifier, name FROM enum_items WHERE key = ?", key)

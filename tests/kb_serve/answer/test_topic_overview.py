@@ -192,3 +192,16 @@ def test_what_a_page_says_must_be_there_stands_before_the_steps(tmp_path: Path, 
         told = [block.text for block in Topics(own).overview(slug).first]
     assert told[1].endswith("Baking requires a mesh to have a UV map.")
     assert "bpy.ops.object.bake(" in told[2]
+
+
+def test_what_scripts_use_most_that_is_called_so_stands_beside_the_page(kb: KnowledgeBase) -> None:
+    word, path = "modifiers", "bpy.types.Object.modifiers"
+    answer = kb.query(word)
+    assert answer.hits[0].is_page
+    assert answer.hits[1].id == path
+    assert f"- `{path}`" in answer.text.split("**Most used**")[1].split("\n\n")[0]
+
+
+@pytest.mark.parametrize("word", ["cloth", "wind", "cloth simulation"])
+def test_what_is_used_little_or_asked_in_several_words_does_not(kb: KnowledgeBase, word: str) -> None:
+    assert "**Most used**" not in kb.query(word).text
