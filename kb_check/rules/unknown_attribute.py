@@ -72,7 +72,7 @@ _VALUE = "default_value"
 def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("attribute", "store", "text", "button"):
         owner = _class_of(script, row.missing[0])
-        lost = row.kind == "store" and script.version < _REFUSED and script.api.descends(owner, _OF_SCRIPTS)
+        lost = _is_lost(script, row, owner)
         if not owner.startswith("bpy.ops") and script.api.is_class(owner) and owner != CONTEXT:
             had = _owner_that_had(script, row, owner)
             lacking = script.names.member(had, row.value, reading=row.kind != "store")
@@ -96,7 +96,14 @@ def _of_unknown(script: Script) -> Iterator[Finding]:
         kind = "attribute" if isinstance(node.ctx, ast.Load) else "store"
         row = Resolution(node, kind, missing=(owner,), value=node.attr)
         lacking = script.names.member(owner, node.attr, reading=kind == "attribute")
-        yield lacking_finding(script, RULE.id, row, lacking)
+        yield lacking_finding(
+            script, RULE.id, row, lacking, "warning" if _is_lost(script, row, owner) else "error"
+        )
+
+
+def _is_lost(script: Script, row: Resolution, owner: str) -> bool:
+    """Whether what is assigned is lost without an error."""
+    return row.kind == "store" and script.version < _REFUSED and script.api.descends(owner, _OF_SCRIPTS)
 
 
 def _elsewhere(script: Script, row: Resolution, owner: str, lacking: Lacking) -> list[Elsewhere]:

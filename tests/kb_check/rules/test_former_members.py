@@ -6,9 +6,12 @@ from textwrap import dedent
 from typing import TYPE_CHECKING
 
 import pytest
+from other_versions import base_of, errors_in
+
+from kb_check.checker import Checker
 
 if TYPE_CHECKING:
-    from kb_check.checker import Checker
+    from pathlib import Path
 
 _LACKS = "unknown-attribute"
 
@@ -109,3 +112,13 @@ def test_nothing_is_known_where_blenders_module_may_be_a_stand_in(rule_checker: 
                 made.data.use_auto_smooth = True
     """
     assert errors(rule_checker, code.replace("DUMMY", dummy)) == []
+
+
+def test_what_blender_loses_without_an_error_is_a_warning(tmp_path: Path) -> None:
+    """Before 5.0, a property group takes every name that is assigned."""
+    lines = ["bpy.context.scene.cycles.diffuse_samples = 4", "bpy.context.object.data.use_auto_smooth = True"]
+    assert [bool(error) for error in errors_in("4.2", tmp_path, lines)] == [False, True]
+    code = "import bpy\nfrom .making import made\nmade.cycles.diffuse_samples = 4\nmade.data.use_auto_smooth = True\n"
+    with Checker(base_of("4.2")) as checker:
+        found = [(one.span.line, one.severity) for one in checker.check(code)]
+    assert found == [(3, "warning"), (4, "error")]
