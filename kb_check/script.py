@@ -13,6 +13,7 @@ from kb_build.flow.syntax.trees import walk
 from kb_build.flow.values.types import Instance
 from kb_check.findings import Edit, Span
 from kb_check.running.raised import raised_by
+from kb_check.syntax.given_names import given_names
 from kb_check.text.source import split_lines
 
 if TYPE_CHECKING:
@@ -102,26 +103,15 @@ class Script:
         """Whether a name is one that the likely class of a value has lost, and that nothing in this Blender has."""
         return (
             row.kind in {"attribute", "store", "text", "button"}
-            and row.value not in self._own_names
+            and row.value not in self.own_names
             and all(self.names.had(owner, row.value) for owner in row.missing)
             and self.names.is_nowhere(row.value)
         )
 
     @cached_property
-    def _own_names(self) -> frozenset[str]:
+    def own_names(self) -> frozenset[str]:
         """The names that the script gives to its classes and their instances."""
-        found: set[str] = set()
-        for node in self.all(ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Name, ast.Attribute):
-            match node:
-                case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
-                    found.add(name)
-                case ast.Name(id=name, ctx=ast.Store()):
-                    found.add(name)
-                case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Store()):
-                    found.add(name)
-                case _:
-                    pass
-        return frozenset(found)
+        return given_names(self.tree)
 
     def _is_of_enabled(self, row: Resolution) -> bool:
         """Whether it is what an add-on registers that Blender brings and that a file of the package enables."""

@@ -62,7 +62,7 @@ _PARTS = (
     "bench",
 )  # of the project that have packages in Blender
 _MARK = "ANSWERS:"
-_UNBOUND = re.compile(r"called `(\w+)`: NameError")
+_UNBOUND = re.compile(r"(?:called )?`(\w+)`(?: is bound in .*)?: NameError")
 _ON_PATH = ("modules", "startup", "addons_core", "addons")  # folders of scripts that Python imports from
 _SECONDS = 120
 # Runs in Blender: each text of code, from the state that Blender starts in, and what it ends in.

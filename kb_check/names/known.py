@@ -184,9 +184,9 @@ class KnownNames:
             owner, value, values, f"{value!r} is not a value of `{owner}`", "It takes", similar
         )
 
-    def socket(self, node: str, name: str, names: Iterable[str]) -> Lacking:
-        """A socket that a node lacks; ``names`` are those that it has."""
-        for side in SIDES:
+    def socket(self, node: str, name: str, names: Iterable[str], sides: Iterable[str] = SIDES) -> Lacking:
+        """A socket that a node lacks; ``names`` are those that it has on the ``sides`` where it is asked for."""
+        for side in sides:
             part = f'.{side}["{name}"]'
             if removed := self._lookup.of_path(node + part) or self._of_former(node, part):
                 return self._removed_of(f"{node}.", removed, f"`{node}` has no socket {name!r}", "had")

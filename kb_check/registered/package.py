@@ -13,6 +13,7 @@ from kb_build.flow.state.source_files import module_name
 from kb_build.flow.syntax.trees import walk
 from kb_check.registered.foreign_addons import brought_addons, enables_any, foreign_addon
 from kb_check.registered.package_roots import package_root
+from kb_check.syntax.given_names import given_names
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -63,6 +64,15 @@ class Package:
             for other in others
             for node in walk(other)
         )
+
+    def gives(self, name: str) -> bool:
+        """Whether a file gives something of its own a name. Asked once all files were added."""
+        return name in self._given
+
+    @cached_property
+    def _given(self) -> frozenset[str]:
+        trees = (one.tree for one in self._analyses if one.tree is not None)
+        return frozenset(name for tree in trees for name in given_names(tree))
 
     def submodules(self, path: str, tree: ast.Module) -> frozenset[str]:
         """The modules that may be bound in a file by being imported anywhere, ``from .sub import x``: those right below

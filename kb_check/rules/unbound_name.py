@@ -1,4 +1,4 @@
-"""A name that nothing in the script binds: Python raises NameError where it comes to it.
+"""A name that nothing binds where it is read: Python raises NameError where it comes to it.
 
 ```python
 import bpy
@@ -6,6 +6,14 @@ import bpy
 axis = Vector((0, 0, 1))  # reported: from mathutils import Vector
 turn = math.radians(90)  # reported: import math
 bpy.context.object.location = locaton  # reported
+
+
+def make():
+    cube = bpy.data.objects["Cube"]
+
+
+def paint():
+    cube.color = (1, 0, 0, 1)  # reported: `make` alone binds it
 ```
 
 Not reported: scripts that import nothing, which are pieces of others; with ``from … import *``, ``exec``,
@@ -31,6 +39,7 @@ from kb_check.running.tried import is_tried
 from kb_check.script import once_per_script
 from kb_check.syntax.definitions import FUNCTIONS
 from kb_check.syntax.literals import times_bound
+from kb_check.syntax.scopes import read_out_of_scope
 from kb_check.syntax.words import attributes
 from kb_serve.recognise.likely.corrections import is_misspelling, nearest
 
@@ -38,6 +47,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_check.script import Script
+    from kb_check.syntax.scopes import Holder
 
 # What a module, a class body or the program that runs a script gives: Blender's text editor and console, IPython,
 # gettext, a Python on Windows or one before 3.
@@ -59,15 +69,35 @@ def _check(script: Script) -> Iterator[Finding]:
         return
     unread: set[ast.expr] | None = None
     unbound: list[ast.Name] = []
+    of_others = dict(read_out_of_scope(script.tree))
     for node in script.all(ast.Name):
-        if not isinstance(node.ctx, ast.Load) or node.id in _GIVEN or times_bound(script)[node.id]:
+        if not isinstance(node.ctx, ast.Load) or node.id in _GIVEN:
+            continue
+        if times_bound(script)[node.id] and node not in of_others:
             continue
         if _PLACEHOLDER.fullmatch(node.id) or node.id in _submodules(script):
             continue
         unread = _unread(script) | _asked_for(script) if unread is None else unread
         if node not in unread and script.type_of(node) is not None and not is_tried(script, node, _ERROR):
             unbound.append(node)
-    yield from _findings(script, unbound)
+    yield from _findings(script, [node for node in unbound if node not in of_others])
+    for node in unbound:
+        if node in of_others:
+            yield _bound_elsewhere(script, node, of_others[node])
+
+
+def _bound_elsewhere(script: Script, node: ast.Name, holders: list[Holder]) -> Finding:
+    """What is said of a name that only other functions and classes bind."""
+    there = " and ".join(f"`{holder.name}`" for holder in holders[:2]) + (
+        " alone" if len(holders) < 3 else " …"
+    )
+    way = (
+        f"Read it of the class, `self.{node.id}`."
+        if all(holder.is_class for holder in holders)
+        else "Give it as an argument."
+    )
+    told = f"`{node.id}` is bound in {there}, and unknown here: NameError. {way}"
+    return Finding(RULE.id, "error", script.span(node), told)
 
 
 def _binds_openly(script: Script) -> bool:

@@ -13,6 +13,10 @@ light.energy.value = 100  # reported: a number is assigned as it is, `light.ener
 mesh.vertices.add(1).co = (0, 0, 0)  # reported: the call returns nothing
 ```
 
+So is what this Blender has nowhere and an earlier one had, of a value of which no more is known than what holds it
+(``thing.data.use_auto_smooth``), or what it is called in a script that speaks of the class (``file_node.file_slots``,
+``CompositorNodeOutputFile``), unless the script, or a file beside it, calls something of its own so.
+
 A note, no error: what an add-on may register that the script enables and that nobody can look into here. A warning: an
 object's member of a parameter, or of an element of one, that nothing but its annotation says is the object's data, and
 what no class has of a parameter that nothing but its annotation says is Blender's.
@@ -28,7 +32,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.flow.syntax.trees import walk
-from kb_build.flow.values.types import UNKNOWN, Plain, members
+from kb_build.flow.values.types import UNKNOWN, Plain, Resolution, members
 from kb_build.symbols.api_names import BLEND_DATA, CONTEXT, OBJECT
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.object_data import OBJECT_DATA
@@ -36,6 +40,7 @@ from kb_build.symbols.records import SCALAR_TYPES
 from kb_check.calls.resolved import callee_path, member_path
 from kb_check.calls.sites import nothing_from, other_way
 from kb_check.findings import Finding, Fix
+from kb_check.names.former_members import former_members
 from kb_check.names.lacking import data_class_that_had, lacking_finding
 from kb_check.nodes.shown_sockets import socket_classes
 from kb_check.rule import Rule
@@ -52,7 +57,6 @@ from kb_serve.recognise.elsewhere.members_within import members_within
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.flow.values.types import Resolution
     from kb_check.names.known import Lacking
     from kb_check.script import Script
 
@@ -68,7 +72,7 @@ _VALUE = "default_value"
 def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("attribute", "store", "text", "button"):
         owner = _class_of(script, row.missing[0])
-        lost = row.kind == "store" and script.version < _REFUSED and script.api.descends(owner, _OF_SCRIPTS)
+        lost = _is_lost(script, row, owner)
         if not owner.startswith("bpy.ops") and script.api.is_class(owner) and owner != CONTEXT:
             had = _owner_that_had(script, row, owner)
             lacking = script.names.member(had, row.value, reading=row.kind != "store")
@@ -80,9 +84,26 @@ def _check(script: Script) -> Iterator[Finding]:
                 instead = tuple(other.path for other in others)
                 lacking = replace(lacking, message=told, instead=instead, replacement="")
             yield lacking_finding(script, RULE.id, row, lacking, level)
+    yield from _of_unknown(script)
     yield from _of_python(script)
     yield from _of_libraries(script)
     yield from _of_sockets(script)
+
+
+def _of_unknown(script: Script) -> Iterator[Finding]:
+    """What this Blender has nowhere, of values that are known only by how they are held or called."""
+    for node, owner in former_members(script):
+        kind = "attribute" if isinstance(node.ctx, ast.Load) else "store"
+        row = Resolution(node, kind, missing=(owner,), value=node.attr)
+        lacking = script.names.member(owner, node.attr, reading=kind == "attribute")
+        yield lacking_finding(
+            script, RULE.id, row, lacking, "warning" if _is_lost(script, row, owner) else "error"
+        )
+
+
+def _is_lost(script: Script, row: Resolution, owner: str) -> bool:
+    """Whether what is assigned is lost without an error."""
+    return row.kind == "store" and script.version < _REFUSED and script.api.descends(owner, _OF_SCRIPTS)
 
 
 def _elsewhere(script: Script, row: Resolution, owner: str, lacking: Lacking) -> list[Elsewhere]:

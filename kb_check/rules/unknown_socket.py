@@ -60,11 +60,11 @@ def _check(script: Script) -> Iterator[Finding]:
         ):
             continue
         node = row.missing[0]
-        sockets = (socket for side in _sides(row) for socket in script.api.sockets(node, side))
+        sides = _sides(row)
+        sockets = (socket for side in sides for socket in script.api.sockets(node, side))
         names = [_asked_by(socket) for socket in sockets if not is_internal(script.api, socket)]
-        yield lacking_finding(
-            script, RULE.id, row, script.names.socket(node, row.value, dict.fromkeys(names))
-        )
+        lacking = script.names.socket(node, row.value, dict.fromkeys(names), sides)
+        yield lacking_finding(script, RULE.id, row, lacking)
     for row in script.resolutions("item"):
         sockets = [symbol for path in row.symbols if (symbol := script.api.symbols.symbol(path))]
         certain = sockets and row.sure and not row.is_ready_for(*LACKS_KEY) and not row.missing

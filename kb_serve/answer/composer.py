@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.several import QuestionPart
 
 _BESIDE = {NAMES, PAGES}  # blocks of what was found beside the best hit
-_LEAST_PROSE = 3  # words of a question that may ask for a task
+_LEAST_PROSE = 2  # words of a question that may ask for a task, if they are the very words for it
 _KNOWN_OF = 3  # hits for a description among which what one has to know of them is looked for
 _NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
 _KNOWN_OF_A_PART = 1
@@ -137,9 +137,11 @@ class AnswerComposer:
 
     def _recipe(self, text: str, clauses: Sequence[str] = ()) -> AskedRecipe | None:
         """The few lines that do the task of a question, or of one of its clauses."""
-        if is_message(text) or sum(map(str.isalpha, text.split())) < _LEAST_PROSE:
+        words = sum(map(str.isalpha, text.split()))
+        if is_message(text) or words < _LEAST_PROSE:
             return None
-        return self._recipes.find(text, self._ranker.searcher.words.concepts, clauses)
+        recipe = self._recipes.find(text, self._ranker.searcher.words.concepts, clauses)
+        return recipe if recipe and (recipe.is_said or words > _LEAST_PROSE) else None
 
     def _likely_recipe(self, text: str) -> AskedRecipe | None:
         recipe = self._recipe(text)

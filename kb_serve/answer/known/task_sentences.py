@@ -17,10 +17,6 @@ _NORMAL = (
     "In the world: `(ob.matrix_world.inverted().transposed().to_3x3() @ polygon.normal).normalized()`, which holds for "
     "any scale."
 )
-_CHOSEN = (
-    "`bpy.context.selected_objects` is a list of them, `bpy.context.view_layer.objects.selected` has the same: "
-    "`for ob in bpy.context.selected_objects: print(ob.name)`."
-)
 _OWN = (
     '`ob["speed"] = 1.0` gives an object a custom property, and so with a scene, a material or any other data-block: '
     'the file keeps it. `ob.get("speed", 0.0)` reads one that may be missing. One that all have, with a default, is '
@@ -95,13 +91,6 @@ TASK_SENTENCES: tuple[Advice, ...] = (
         _NORMAL,
         wherever=(stems("face normal polygon"), stems("normal normals"), stems("global world")),
         unless=_NODES,
-    ),
-    Advice(
-        _CHOSEN,
-        wherever=(stems("get iterate list loop"), stems("selected"), _OBJECTS),
-        unless=stems(
-            "bake bone editable export face import join keyframe material parent strip vertex vertices"
-        ),
     ),
     Advice(
         _OWN,

@@ -11,6 +11,8 @@ from kb_build.symbols.records import Symbol
 from kb_check.nodes.socket_modes import is_internal
 
 if TYPE_CHECKING:
+    from conftest import Check
+
     from kb_check.checker import Checker
 
 # For each node in each of its modes: how it is made, and what its identifiers that are not names give as keys.
@@ -117,3 +119,15 @@ def test_what_a_node_shows_of_a_scene_is_not_said_to_be_never_there(
     flags = (f"identifier:{name}", "hidden-by-default")
     socket = Symbol(f'{owner}.outputs["{name}"]', "socket", owner, name, flags=flags)
     assert is_internal(rule_checker.api, socket) is internal
+
+
+def test_a_former_output_is_not_taken_for_an_input_of_that_name(check: Check) -> None:
+    code = (
+        "import bpy\n"
+        "tree = bpy.data.node_groups.new('t', 'CompositorNodeTree')\n"
+        "node = tree.nodes.new('ShaderNodeMapRange')\n"
+        "tree.links.new(node.outputs['Value'], tree.nodes.new('CompositorNodeBlur').inputs['Image'])\n"
+    )
+    (found,) = check("unknown-socket", code)
+    assert '`bpy.types.ShaderNodeMapRange.outputs["Result"]`' in found.message
+    assert check("unknown-socket", code.replace("'Value'", "'Result'")) == []

@@ -36,10 +36,22 @@ _WRONG = {
     "another error is caught": "try:\n    nowhere\nexcept KeyError:\n    pass",
     "another name is asked for": "if 'other' in locals():\n    pass\nnowhere",
     "a module that lacks what is read": "random.intricate()",
+    "another function binds it": "def f():\n    cube = 1\ndef g():\n    return cube\nf()\ng()",
+    "a function within binds it": "def f():\n    def g():\n        cube = 1\n    g()\n    return cube\nf()",
+    "the class binds it": "class A:\n    size = 1\n    def f(self):\n        return size\nA().f()",
+    "a class's comprehension": "class A:\n    size = 1\n    all = [size for _ in range(2)]",
+    "a comprehension binds it": "def f(one):\n    return 1\n[one for one in (1, 2)]\none",
 }
 _SOUND = {
     "bound": "from mathutils import Vector\nVector((0, 0, 1))",
     "bound further down": "def f():\n    return later\nlater = 1\nf()",
+    "a function around binds it": "def f():\n    def g():\n        return cube\n    cube = 1\n    return g()\nf()",
+    "of the function around": "def f():\n    n = 0\n    def g():\n        nonlocal n\n        n += 1\n    g()\nf()",
+    "of a class's body": "class A:\n    size = 1\n    twice = size * 2\n    all = [one for one in range(size)]",
+    "bound in a comprehension": "def f():\n    if any((last := one) > 1 for one in (1, 2)):\n        return last\nf()",
+    "a default": "size = 1\ndef f(of=size, *, key=lambda one: one + size, **named):\n    return of, key(1), named\nf()",
+    "caught or given": "import math as m\ntry:\n    m.nothing\nexcept AttributeError as error:\n    print(error)",
+    "bound in a condition": "def g():\n    return late\nif True:\n    late = 1\ng()",
     "global": "def g():\n    global made\n    made = 1\ng()\nmade",
     "of a match": "match {'a': 1}:\n    case {'a': one, **rest}:\n        print(one, rest)",
     "caught": "try:\n    unicode_\nexcept NameError:\n    pass",
@@ -137,3 +149,16 @@ def test_the_closest_name_is_told(check: Check) -> None:
 def test_cells_of_a_notebook_are_one_script(check: Check) -> None:
     source = Source("import bpy\nsize = 1\nprint(size)\n", cells=(Cell(1, 1), Cell(2, 3)))
     assert check("unbound-name", source.text) == []
+
+
+def test_who_binds_a_name_is_told(check: Check) -> None:
+    code = "import bpy\ndef make():\n    cube = 1\ndef paint():\n    return cube\n"
+    (found,) = check("unbound-name", code)
+    assert (
+        "`cube` is bound in `make` alone, and unknown here: NameError. Give it as an argument."
+        in found.message
+    )
+    (found,) = check(
+        "unbound-name", "import bpy\nclass A:\n    size = 1\n    def f(self):\n        return size\n"
+    )
+    assert "Read it of the class, `self.size`." in found.message

@@ -97,13 +97,6 @@ def test_a_normal_holds_for_any_scale(kb: KnowledgeBase) -> None:
     assert abs(normal.dot((b - a).cross(c - b).normalized())) > 0.9
 
 
-def test_the_selected_objects_are_listed(kb: KnowledgeBase) -> None:
-    cube().select_set(True)
-    text = told(kb, "how do I get all selected objects")
-    assert value(text, bpy=bpy) == [cube()] == list(eval(CODE.findall(text)[1], {"bpy": bpy}))
-    run(text)
-
-
 @pytest.mark.parametrize(
     "question",
     [
