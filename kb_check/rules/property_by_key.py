@@ -1,12 +1,14 @@
-"""A property that the script registers, read or set by its name in brackets.
+"""A registered property, read or set by its name in brackets.
 
 Until Blender 4.5 a property of `bpy.props` was kept among the custom properties of its owner. Since 5.0 it has a place
-of its own: brackets, `get` and `in` do not find it, and what they set is another thing.
+of its own: brackets, `get` and `in` do not find it, and what they set is another thing. The same holds for the settings
+of Cycles, which Blender's own add-on registers.
 
 ```python
 bpy.types.Scene.count = bpy.props.IntProperty()
 bpy.context.scene["count"] = 3  # reported: bpy.context.scene.count = 3
 bpy.context.scene.get("count")  # reported
+bpy.context.scene["cycles"]["samples"] = 64  # reported: bpy.context.scene.cycles.samples = 64
 ```
 
 Not reported: properties with `get` or `set`, which keep their value where they like; and those of property groups.
@@ -36,21 +38,25 @@ _GROUP = f"{T}PropertyGroup"
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    if script.version < _SINCE or not _declared(script):
+    if script.version < _SINCE:
         return
     for node in script.all(ast.Subscript, ast.Compare, ast.Call):
         for owner, key in _asked(node):
             name = key.value if isinstance(key, ast.Constant) else None
-            cls = _declared(script).get(name, "") if isinstance(name, str) else ""
-            if not cls or not _is_of(script, owner, cls) or is_tried(script, node):
+            if not isinstance(name, str):
+                continue
+            cls = _declared(script).get(name, "")
+            is_own = bool(cls) and _is_of(script, owner, cls)
+            cls = cls if is_own else _brought(script, owner, name)
+            if not cls or is_tried(script, node):
                 continue
             asks = isinstance(node, ast.Compare)
             advice = f"`{ast.unparse(owner)}.{name}`" if not asks else f"`is_property_set({name!r})`"
+            whose = "that this script registers, which is" if is_own else "that an add-on registers, which is"
             yield Finding(
                 RULE.id, "warning", script.span(node),
-                f"`{name}` is a property of `{cls}` that this script registers, which is no custom property since "
-                f"Blender 5.0: write {advice}.",
-                f"{cls}.{name}", (), _as_attribute(script, node),
+                f"`{name}` is a property of `{cls}` {whose} no custom property since Blender 5.0: write {advice}.",
+                f"{cls}.{name}", (), _as_attribute(script, node, is_group=not is_own),
             )  # fmt: skip
 
 
@@ -90,11 +96,19 @@ def _is_of(script: Script, node: ast.expr, cls: str) -> bool:
     return all(isinstance(kind, Instance) and script.api.descends(kind.cls, cls) for kind in kinds)
 
 
-def _as_attribute(script: Script, node: ast.expr) -> Fix | None:
+def _brought(script: Script, owner: ast.expr, name: str) -> str:
+    """The class of a value, if an add-on that Blender brings gives it a group of properties of this name."""
+    cls = script.class_of(owner)
+    kind = member.type if cls and (member := script.api.member(cls, name)) else None
+    return cls if isinstance(kind, Instance) and script.api.descends(kind.cls, _GROUP) else ""
+
+
+def _as_attribute(script: Script, node: ast.expr, *, is_group: bool) -> Fix | None:
+    """Nothing is assigned to a group itself, and no attribute is deleted."""
     if (
         not isinstance(node, ast.Subscript)
         or not isinstance(node.slice, ast.Constant)
-        or isinstance(node.ctx, ast.Del)
+        or isinstance(node.ctx, (ast.Del, ast.Store) if is_group else ast.Del)
     ):
         return None
     name = str(node.slice.value)

@@ -116,6 +116,30 @@ def test_a_registered_property_is_no_custom_one(rule_checker: Checker, tmp_path:
     assert [one.fix.edits[0].text for one in found if one.fix] == [".count", ".count"]
 
 
+_OF_CYCLES: str = """\
+import bpy
+scene = bpy.context.scene
+scene.cycles.samples = 5
+scene["cycles"] = {"samples": 3}
+scene["cycles"]["samples"] = 3
+print("cycles" in scene)
+scene["frames"] = 3
+bpy.context.view_layer["cycles"]["use_denoising"] = False
+"""
+
+
+def test_what_cycles_registers_is_no_custom_property(rule_checker: Checker, tmp_path: Path) -> None:
+    seen = run_statements(
+        tmp_path, _OF_CYCLES.splitlines(), {4: "scene.cycles.samples", 5: "scene.cycles.samples"}
+    )
+    # What is set in brackets changes nothing.
+    assert (seen[4][2], seen[5][2]) == ("5", "5")
+    found = rule_checker.check(_OF_CYCLES, rules=["property-by-key"])
+    assert [one.span.line for one in found] == [4, 5, 6, 8]
+    # Nothing is assigned to the group itself.
+    assert [one.fix.edits[0].text if one.fix else "" for one in found] == ["", ".cycles", "", ".cycles"]
+
+
 _OF_GROUP: str = """\
 import bpy
 bpy.types.PropertyGroup.count = bpy.props.IntProperty()
