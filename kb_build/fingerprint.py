@@ -68,7 +68,7 @@ def extractor_digest() -> str:
     """
     files = sorted((_PACKAGE / "blender" / "inside").rglob("*.py"))
     code = _code({file: file.read_bytes() for file in files})
-    return _digest([code, *(path.read_bytes() for path in sorted((_DATA / "history").glob("*")))])
+    return _digest([code, (_DATA / "history" / "api.csv.gz").read_bytes()])
 
 
 @cache
@@ -88,7 +88,7 @@ def code_digest() -> str:
     """Digest of the code, packages and data that shape a base."""
     data = [
         path.read_bytes()
-        for name in ("recipes", "summaries", "words")
+        for name in ("history", "recipes", "summaries", "words")
         for path in sorted((_DATA / name).glob("*"))
     ]
     return _digest(

@@ -16,7 +16,7 @@ from urllib.parse import quote
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCHEMA_VERSION = 19
+SCHEMA_VERSION = 20
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's field for the application a file belongs to
 
 # How a key came about, in the order in which an answer prefers them.
@@ -151,6 +151,10 @@ CREATE TABLE similar_names (
 -- lack them, empty where that is the one just before. So of those that only newer versions have, where it is not.
 CREATE TABLE since (path TEXT PRIMARY KEY, version TEXT NOT NULL, lacked TEXT NOT NULL) WITHOUT ROWID;
 
+-- What older versions have at a place of a node, ``inputs[7]``, where this one has another socket.
+CREATE TABLE moved_sockets (
+    path TEXT NOT NULL, version TEXT NOT NULL, name TEXT NOT NULL, PRIMARY KEY (path, version)
+) WITHOUT ROWID;
 -- Former names (sockets, node classes) that this Blender still takes, tried on an instance, and what they give.
 CREATE TABLE still_works (path TEXT PRIMARY KEY, taken_as TEXT NOT NULL) WITHOUT ROWID;
 -- How Blender's own scripts use a symbol: the clearest few uses, best first, each up to three lines of a file; how

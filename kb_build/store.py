@@ -127,6 +127,7 @@ def _write_removed_symbols(connection: sqlite3.Connection, removed_symbols: Remo
     _insert(connection, "successors", removed_symbols.successors, 6)
     _insert(connection, "similar_names", removed_symbols.similar_names, 3)
     _insert(connection, "since", removed_symbols.since, 3)
+    _insert(connection, "moved_sockets", removed_symbols.moved_sockets, 3)
     if removed_symbols.versions:
         facts = {
             "history_versions": removed_symbols.versions,

@@ -49,7 +49,8 @@ _RULES = (
     "refused-path", "refused-product", "refused-property", "refused-value", "unknown-node", "unknown-value",
     "wrong-count", "wrong-mode", "wrong-size", "wrong-type",
 )  # fmt: skip
-_NEVER_TRUE = "never-true"  # a warning, as Blender refuses nothing
+# Warnings, as Blender refuses nothing of it.
+_NOT_REFUSED = ("moved-socket", "never-true")
 _NO_VALUE = "unknown-value"
 _IS_NONE = re.compile(NO_VALUE)  # what is said of a value that no Blender has
 _ARGUMENT = "("  # in the path of an argument: of the values of properties an answer tells by itself
@@ -87,7 +88,7 @@ def notes_on_code(reader: BaseReader, query: str) -> tuple[str, ...]:
     is_long = sum(chain.is_code for chain in find_chains(query)) >= MOST_CODE
     try:
         with reader.bounded(UNLIMITED):  # each line of the code may take as much as a query
-            rules = (*_RULES, _NEVER_TRUE, *_NAMES, *(_GONE_NAMES if is_long else ()))
+            rules = (*_RULES, *_NOT_REFUSED, *_NAMES, *(_GONE_NAMES if is_long else ()))
             read = checker.read(code)
             found = with_whole_fixes(checker, read, checker.check(read, rules=rules))
             findings = [*_news(found, lines, reader, is_long=is_long)]
@@ -220,7 +221,7 @@ def _news(
         is_left = is_long and (finding.rule == _KEYWORD or reader.history.removed(finding.symbol) is not None)
         is_product = finding.rule == _PRODUCT and finding.fix is not None
         is_told = (is_name and not (is_value or is_text or is_left)) or is_behind or is_product
-        is_wrong = finding.severity == "error" or is_value or finding.rule == _NEVER_TRUE
+        is_wrong = finding.severity == "error" or is_value or finding.rule in _NOT_REFUSED
         if is_wrong and span.line > 1 and not is_told:
             yield finding
 

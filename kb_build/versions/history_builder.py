@@ -1,4 +1,4 @@
-"""Makes the history file from every available Blender; keeps other versions from the old file."""
+"""Makes the files of the history from every available Blender; keeps other versions from the old files."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ from kb_build.blender.extractor import extract_api
 from kb_build.errors import ExtractError, KBBuildError, StoreError
 from kb_build.versions.history import ApiHistory, history_paths, is_from_stubs
 from kb_build.versions.history_merge import merge_versions
+from kb_build.versions.socket_places import PLACES_FILE, SocketPlaces
+from kb_build.versions.socket_places import places_of as socket_places
 from simworlds.errors import UserError
 from simworlds.files import staged_file
 from simworlds.releases import minor_of, version_key
@@ -20,6 +22,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
+    from kb_build.blender.extract_reader import Extract
+    from kb_build.versions.socket_places import Places
     from kb_build.versions.stub_check import Agreement
     from simworlds.sandbox.runtime import Runtime
     from simworlds.terminal.progress import Progress
@@ -62,6 +66,7 @@ def build_history(  # noqa: PLR0913 - all but the first are named
 ) -> HistoryReport:
     """Extracts ``versions`` (and whatever the executables are) and writes their history to ``output``.
 
+    The places of sockets (see socket_places) are written beside it.
     Extracts lie in ``home``: a run that was stopped goes on where it was. Versions that only the old file
     knows are kept; so are those that cannot be had now. ``stubs`` is a folder of folders ``2.79``,
     ``2.80`` …, each with that version's stubs: they tell of the versions that no Blender does. Raises StoreError
@@ -69,7 +74,7 @@ def build_history(  # noqa: PLR0913 - all but the first are named
     KBBuildError when no version could be had.
     """
     old = _old(output, force)
-    paths, missing, faults = _collect(versions, blender_exes, home, progress)
+    paths, places, missing, faults = _collect(versions, blender_exes, home, progress)
     if not paths and (stubs is None or old is None):
         reasons = "; ".join(f"{version}: {reason}" for version, reason in missing.items())
         raise KBBuildError(f"no Blender was available; {output} is unchanged. {reasons}")
@@ -90,6 +95,7 @@ def build_history(  # noqa: PLR0913 - all but the first are named
     written = old != history
     if written:
         _write(output, data)
+    written = _write_places(output.with_name(PLACES_FILE.name), places, kept) or written
     return HistoryReport(
         path=output,
         written=written,
@@ -137,24 +143,27 @@ def _old(output: Path, force: bool) -> ApiHistory | None:
 
 def _collect(
     versions: Sequence[str], blender_exes: Sequence[Path], home: Path, progress: Progress
-) -> tuple[dict[str, set[str]], dict[str, str], list[str]]:
-    """(full version → paths, what is missing → why, faults), each Blender asked in turn."""
+) -> tuple[dict[str, set[str]], dict[str, Places], dict[str, str], list[str]]:
+    """(full version → paths, → places of sockets, what is missing → why, faults), each Blender asked in turn."""
     wanted: list[tuple[str, str | None, Path | None]] = [(version, version, None) for version in versions]
     wanted += [(str(executable), None, executable) for executable in blender_exes]
     paths_of: dict[str, set[str]] = {}
+    places_of: dict[str, Places] = {}
     missing: dict[str, str] = {}
     faults: list[str] = []
     for number, (name, version, executable) in enumerate(wanted):
         progress(f"Blender {name}", number, len(wanted))
         try:
             runtime = find_runtime(version, home=home, blender_exe=executable, progress=progress)
-            paths, failed = _paths(runtime, home, progress)
+            extract = _extract(runtime, home, progress)
         except UserError as error:
             missing[name] = str(error)
             continue
-        if failed:
-            faults += failed
-            missing[name] = f"{len(failed)} step(s) of the extraction failed: what it lacks may well exist"
+        if extract.faults:
+            faults += [f"Blender {extract.version}: {fault}" for fault in extract.faults]
+            missing[name] = (
+                f"{len(extract.faults)} step(s) of the extraction failed: what it lacks may well exist"
+            )
             continue
         same = next(
             (patch for patch in paths_of if minor_of(patch) == minor_of(runtime.version)),
@@ -162,18 +171,19 @@ def _collect(
         )
         if same is None or version_key(same) < version_key(runtime.version):
             paths_of.pop(same or "", None)
-            paths_of[runtime.version] = paths
-    return paths_of, missing, faults
+            places_of.pop(same or "", None)
+            paths_of[runtime.version] = set(history_paths(extract))
+            places_of[runtime.version] = socket_places(extract.symbols)
+    return paths_of, places_of, missing, faults
 
 
-def _paths(runtime: Runtime, home: Path, progress: Progress) -> tuple[set[str], list[str]]:
-    """(paths, faults) of one Blender; a file that turns out unreadable is made once more."""
+def _extract(runtime: Runtime, home: Path, progress: Progress) -> Extract:
+    """What one Blender says; a file that turns out unreadable is made once more."""
     file = extract_api(runtime, home=home, progress=progress)
     try:
-        extract = read_extract(file)
+        return read_extract(file)
     except ExtractError:
-        extract = read_extract(extract_api(runtime, home=home, again=True, progress=progress))
-    return set(history_paths(extract)), [f"Blender {extract.version}: {fault}" for fault in extract.faults]
+        return read_extract(extract_api(runtime, home=home, again=True, progress=progress))
 
 
 def _keep(old: ApiHistory, paths: dict[str, set[str]]) -> tuple[str, ...]:
@@ -203,6 +213,17 @@ def _refuse_poorer(old: ApiHistory, extracted: Mapping[str, set[str]], output: P
                 f"{output} knows {len(before)} symbols of Blender {minor_of(version)}, the new extract only "
                 f"{len(paths)} (lost: {lost}, …). The file is unchanged; --force replaces it"
             )
+
+
+def _write_places(output: Path, places: Mapping[str, Places], kept: Sequence[str]) -> bool:
+    """Writes the places of sockets, with those of kept versions from the old file; whether anything was new."""
+    old = SocketPlaces.load(output) if output.is_file() else SocketPlaces({})
+    known = {version: rows for version, rows in old.versions.items() if version in kept}
+    text = SocketPlaces({**known, **places}).to_text()
+    if text == old.to_text():
+        return False
+    _write(output, text.encode())
+    return True
 
 
 def _write(output: Path, data: bytes) -> None:

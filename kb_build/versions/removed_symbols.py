@@ -13,7 +13,9 @@ from kb_build.symbols.api_names import interface_part
 from kb_build.symbols.paths import item_of, socket_name, socket_side, split_path
 from kb_build.versions.arrivals import told_arrivals
 from kb_build.versions.history import SHARED, paths_of
+from kb_build.versions.moved_sockets import find_moved_sockets
 from kb_build.versions.similar_names import find_similar_names
+from kb_build.versions.socket_places import SocketPlaces
 from kb_build.versions.successors import Successors, load_successors, lost_modules
 
 if TYPE_CHECKING:
@@ -35,7 +37,7 @@ _MEMBER = re.compile(r"(bpy\.types\.\w+)(\.\w+)(?!\w|\[)")  # not sockets
 
 @dataclass(frozen=True, slots=True)
 class RemovedSymbols:
-    """Rows of the tables removed, removed_names, successors, similar_names and since (see schema.DDL).
+    """Rows of the tables removed, removed_names, successors, similar_names, since and moved_sockets (see schema.DDL).
 
     ``versions`` are all that the history knows, oldest first; ``unknown_modules`` those that the version's build lacks,
     which says nothing about the version.
@@ -46,6 +48,7 @@ class RemovedSymbols:
     successors: tuple[tuple[str, int, str, str, str, str], ...] = ()
     similar_names: tuple[tuple[str, str, float], ...] = ()
     since: tuple[tuple[str, str, str], ...] = ()
+    moved_sockets: tuple[tuple[str, str, str], ...] = ()
     versions: tuple[str, ...] = ()
     unknown_modules: tuple[str, ...] = ()
 
@@ -129,6 +132,7 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
         successors=tuple(rows),
         similar_names=tuple(find_similar_names(symbols, history, version, {path for path, *_ in rows})),
         since=(*told_arrivals(symbols, history, version, table), *doubted),
+        moved_sockets=tuple(find_moved_sockets(symbols, SocketPlaces.load(), version, rows)),
         versions=history.versions,
         unknown_modules=tuple(path for path in history.modules(version) if path not in known),
     )

@@ -26,12 +26,17 @@ _ATOMS = (ast.Name, ast.Constant, ast.Attribute, ast.Call, ast.Subscript, ast.Tu
 
 
 class Place:
-    """One script, what the rules found in it, and the oldest Blender that it seems to be written for."""
+    """One script, what the rules found in it, and the oldest Blender that it seems to be written for; ``source`` is the
+    one that it is said to be written for.
+    """
 
-    def __init__(self, script: Script, findings: Sequence[Finding], written_for: Version) -> None:
+    def __init__(
+        self, script: Script, findings: Sequence[Finding], written_for: Version, source: Version | None = None
+    ) -> None:
         self.script = script
         self.findings = findings
         self.written_for = written_for
+        self.source = source
         self.target: Version = (script.version[0], script.version[1])
 
     @cached_property

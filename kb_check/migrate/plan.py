@@ -111,7 +111,9 @@ class Migrator:
         """Makes all the changes that are known now; whether there were any."""
         if state.reading.error is not None or not state.reading.analysis.complete:
             return False
-        place = Place(self._target.script(state.reading, package), state.findings, written_for)
+        place = Place(
+            self._target.script(state.reading, package), state.findings, written_for, self._written_for
+        )
         proposals = apart(state.text, self._proposals(place), lambda change: change.edits)
         chosen = [change for change in proposals if change.since <= place.target and self._is_wanted(change)]
         guarded: list[Change] = []

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_serve.lookups.records import Successor
+from simworlds.releases import version_key
 
 if TYPE_CHECKING:
     from kb_serve.lookups.base_file import BaseFile
@@ -91,6 +92,15 @@ class HistoryLookups:
             "SELECT version, lacked FROM since WHERE path = ?", path
         )
         return rows[0] if rows else ("", "")
+
+    def moved_socket(self, path: str) -> list[tuple[str, str]]:
+        """(older version, name of its socket) of a place of a node, ``….inputs[7]``, where this version has another
+        socket; newest first.
+        """
+        rows: list[tuple[str, str]] = self._file.rows(
+            "SELECT version, name FROM moved_sockets WHERE path = ?", path
+        )
+        return sorted(rows, key=lambda row: version_key(row[0]), reverse=True)
 
     def gone_in(self, version: str) -> list[str]:
         """Paths of the symbols that a version was the first to lack."""

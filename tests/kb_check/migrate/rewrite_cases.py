@@ -122,6 +122,19 @@ CASES = (
          tex.image = bpy.data.images.new("I", 4, 4)
          tex.image.colorspace_settings.name = "Non-Color"
          """),
+    case("socket-place", "3.4",
+         """
+         tree = bpy.data.node_groups.new("t", "ShaderNodeTree")
+         principled = tree.nodes.new("ShaderNodeBsdfPrincipled")
+         principled.inputs[9].default_value = 0.25
+         tree.links.new(tree.nodes.new("ShaderNodeValue").outputs[0], principled.inputs[7])
+         """,
+         """
+         tree = bpy.data.node_groups.new("t", "ShaderNodeTree")
+         principled = tree.nodes.new("ShaderNodeBsdfPrincipled")
+         principled.inputs["Roughness"].default_value = 0.25
+         tree.links.new(tree.nodes.new("ShaderNodeValue").outputs[0], principled.inputs["Specular IOR Level"])
+         """),
     case("scaled-socket", "3.4",
          """
          material = bpy.data.materials.new("M")

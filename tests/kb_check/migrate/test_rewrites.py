@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 from rewrite_cases import CASES, HEAD, Case
 
+from kb_check.migrate.place import version_of
 from kb_check.migrate.plan import Migrator
 from kb_check.migrate.rewrite import all_rewrites
 from kb_check.migrate.trial import run_in, runtime_at_hand
@@ -47,9 +48,13 @@ def raised(codes: list[str], runtime: Runtime, folder: Path) -> list[str]:
     return found
 
 
+def migrator(checker: Checker, case: Case) -> Migrator:
+    return Migrator(checker, written_for=version_of(case.written_for))
+
+
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_old_code_becomes_new_code(case: Case, checker: Checker) -> None:
-    (file,) = Migrator(checker).migrate({"script.py": case.old})
+    (file,) = migrator(checker, case).migrate({"script.py": case.old})
     lines = [line for line in file.new.splitlines() if line != "from bpy_extras import anim_utils"]
     assert lines == case.new.splitlines()
     assert case.rewrite in {change.rule for change in file.changes}
@@ -65,7 +70,7 @@ def test_blender_refuses_the_old_code_and_runs_the_new(checker: Checker, base: P
     assert runtime is not None
     # What ``*`` means changed without an error for some, and nothing is drawn without a window.
     old = [case for case in CASES if case.rewrite not in {"split-factor", "matrix-product"}]
-    new = [Migrator(checker).migrate({"script.py": case.old})[0].new for case in CASES]
+    new = [migrator(checker, case).migrate({"script.py": case.old})[0].new for case in CASES]
     found = raised([case.old for case in old] + new, runtime, tmp_path)
     refused, ran = found[: len(old)], found[len(old) :]
     assert [case.name for case, error in zip(old, refused, strict=True) if not error] == []
@@ -98,3 +103,28 @@ def test_code_that_is_right_stays(code: str, checker: Checker) -> None:
     (file,) = Migrator(checker).migrate({"script.py": HEAD + code})
     assert file.new == file.old
     assert not file.changes
+
+
+_BY_PLACE = """\
+import bpy
+tree = bpy.data.materials.new("m").node_tree
+principled = tree.nodes.new("ShaderNodeBsdfPrincipled")
+principled.inputs[9].default_value = 0.3
+principled.inputs[0].default_value = (1, 0, 0, 1)
+principled.inputs[4].default_value = 1.4
+principled.inputs[19].default_value = (1, 1, 1, 1)
+"""
+
+
+def test_a_place_tells_nothing_where_nobody_says_what_it_was_written_for(checker: Checker) -> None:
+    (file,) = Migrator(checker).migrate({"script.py": _BY_PLACE})
+    assert file.new == _BY_PLACE
+    assert [one.line for one in file.decisions if one.rule == "moved-socket"] == [4, 6, 7]
+
+
+def test_only_what_has_a_name_is_written_by_it(checker: Checker) -> None:
+    (file,) = Migrator(checker, written_for=(3, 4)).migrate({"script.py": _BY_PLACE})
+    # The index of refraction of the subsurface is hidden, and the emission has a strength of its own.
+    assert [done.line for done in file.changes] == [4]
+    assert 'inputs["Roughness"]' in file.new
+    assert [one.line for one in file.decisions if one.rule == "moved-socket"] == [6, 7]
