@@ -50,7 +50,7 @@ _RULES = (
     "wrong-count", "wrong-mode", "wrong-size", "wrong-type",
 )  # fmt: skip
 # Warnings, as Blender refuses nothing of it.
-_NOT_REFUSED = ("moved-socket", "never-true")
+_NOT_REFUSED = ("invalid-link", "moved-socket", "never-true")
 _NO_VALUE = "unknown-value"
 _IS_NONE = re.compile(NO_VALUE)  # what is said of a value that no Blender has
 _ARGUMENT = "("  # in the path of an argument: of the values of properties an answer tells by itself
