@@ -100,13 +100,18 @@ class Script:
                 yield row
 
     def _is_former(self, row: Resolution) -> bool:
-        """Whether a name is one that the likely class of a value has lost, and that nothing in this Blender has."""
+        """Whether a name is one that the likely class of a value, or one below it, has lost, and that nothing in this
+        Blender has.
+        """
         return (
             row.kind in {"attribute", "store", "text", "button"}
             and row.value not in self.own_names
-            and all(self.names.had(owner, row.value) for owner in row.missing)
             and self.names.is_nowhere(row.value)
+            and all(self._had(owner, row.value) for owner in row.missing)
         )
+
+    def _had(self, owner: str, name: str) -> bool:
+        return any(self.names.had(cls, name) for cls in (owner, *self.api.descendants(owner)))
 
     @cached_property
     def own_names(self) -> frozenset[str]:

@@ -122,3 +122,21 @@ def test_what_blender_loses_without_an_error_is_a_warning(tmp_path: Path) -> Non
     with Checker(base_of("4.2")) as checker:
         found = [(one.span.line, one.severity) for one in checker.check(code)]
     assert found == [(3, "warning"), (4, "error")]
+
+
+_OF_A_NODE = """\
+import bpy
+def store(node: bpy.types.Node):
+    node.base_path = "//frames"
+    node.surely_no_member = 1
+"""
+
+
+def test_what_a_class_below_the_known_one_had_is_found(rule_checker: Checker) -> None:
+    (found,) = rule_checker.check(_OF_A_NODE, rules=["unknown-attribute"])
+    assert (found.span.line, found.symbol) == (3, "bpy.types.CompositorNodeOutputFile.base_path")
+
+
+def test_a_name_that_the_script_gives_a_class_of_its_own_is_not(rule_checker: Checker) -> None:
+    own = "class Own(bpy.types.Node):\n    bl_label = 'Own'\n    base_path: bpy.props.StringProperty()\n"
+    assert rule_checker.check(f"{_OF_A_NODE}{own}", rules=["unknown-attribute"]) == []
