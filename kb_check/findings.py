@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 Severity = Literal["error", "warning", "note"]
 
@@ -62,3 +65,10 @@ class Finding:
     instead: tuple[str, ...] = ()
     fix: Fix | None = None
     absent: tuple[str, ...] = ()
+
+
+def told_once(places: Sequence[Finding]) -> Finding:
+    """The first of some findings that all say the same, which counts the others."""
+    first, *others = places
+    more = f" The same holds for {len(others)} more in this file." if others else ""
+    return replace(first, message=first.message + more)

@@ -1,7 +1,8 @@
 """A property that Blender is about to drop.
 
 Blender itself says so, or its release notes do of what has no effect any more: since when, and what to use. The script
-still runs in this version.
+still runs in this version. What has no successor to be written in its place is reported once for all its places in a
+file.
 
 ```python
 strip.frame_final_start  # reported in 5.1: left_handle
@@ -14,7 +15,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.lines import version_meant
-from kb_check.findings import Finding, Fix
+from kb_check.findings import Finding, Fix, told_once
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -28,6 +29,17 @@ _REPLACED = re.compile(r"[Rr]eplaced by '\.(?P<name>\w+)'")
 
 
 def _check(script: Script) -> Iterator[Finding]:
+    unmended: dict[str, list[Finding]] = {}
+    for found in _found(script):
+        if found.fix is None:
+            unmended.setdefault(found.symbol, []).append(found)
+        else:
+            yield found
+    for places in unmended.values():
+        yield told_once(places)
+
+
+def _found(script: Script) -> Iterator[Finding]:
     for row in script.resolutions("attribute", "store", "text", "button", "keyword", "name"):
         if not row.symbols or not row.sure or row.guarded:
             continue

@@ -33,7 +33,7 @@ from kb_build.symbols.api_names import NODE
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flag_names import NODE_TYPE, READ_ONLY
 from kb_build.symbols.paths import item_of
-from kb_check.findings import Finding, Fix
+from kb_check.findings import Finding, Fix, told_once
 from kb_check.names.lacking import lacking_finding
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
@@ -64,9 +64,7 @@ def _check(script: Script) -> Iterator[Finding]:
                 left_over.setdefault(found.symbol, []).append(found)
             else:
                 yield lacking_finding(script, RULE.id, row, lacking, RULE.severity)
-    for first, *others in left_over.values():
-        more = f" The same holds for {len(others)} more in this file." if others else ""
-        yield replace(first, message=first.message + more)
+    yield from map(told_once, left_over.values())
 
 
 def _never_reached(script: Script) -> Iterator[Finding]:

@@ -265,6 +265,12 @@ def test_in_place_twin_is_offered(check: Check) -> None:
     assert not finding.fix.sure
 
 
+def test_a_deprecated_property_without_successor_is_told_once(check: Check) -> None:
+    code = "import bpy\nfor material in bpy.data.materials:\n    material.use_nodes = True\n"
+    [finding] = check("deprecated", f"{code}    print(material.use_nodes)\n")
+    assert "The same holds for 1 more in this file." in finding.message
+
+
 def test_deprecated_property_names_its_successor(check: Check, rule_checker: Checker) -> None:
     code = "import bpy\nfor strip in bpy.context.scene.sequence_editor.strips:\n    print(strip.frame_final_start)\n"
     symbol = rule_checker.api.symbols.symbol("bpy.types.Strip.frame_final_start")
