@@ -45,9 +45,9 @@ _INSTANCES = frozenset({"self", "cls"})  # of the script's own classes
 # properties are left out: of these an answer tells by itself, as it does of what other Blenders have.
 _RULES = (
     "callback-signature", "crash", "given-callback", "left-out", "list-attribute", "lost-property", "missing-argument",
-    "no-custom-properties", "not-subscriptable", "operator-idname", "positional-argument", "read-only", "refused-call",
-    "refused-path", "refused-product", "refused-property", "refused-value", "unknown-node", "unknown-value",
-    "wrong-count", "wrong-mode", "wrong-size", "wrong-type",
+    "no-custom-properties", "not-a-number", "not-iterable", "not-subscriptable", "operator-idname",
+    "positional-argument", "read-only", "refused-call", "refused-path", "refused-product", "refused-property",
+    "refused-value", "unknown-node", "unknown-value", "wrong-count", "wrong-mode", "wrong-size", "wrong-type",
 )  # fmt: skip
 # Warnings, as Blender refuses nothing of it.
 _NOT_REFUSED = ("invalid-link", "moved-socket", "never-true")
