@@ -270,6 +270,16 @@ _SMOOTHED = (
     "The Smooth by Angle modifier is a group of geometry nodes: `bpy.ops.object.shade_auto_smooth(angle=0.5)` adds it "
     "to the selected objects."
 )
+_SMOOTHED_IN_WINDOW = (
+    "Without a window `bpy.ops.object.shade_auto_smooth` returns {'CANCELLED'} and adds nothing before Blender 5.0 "
+    "(“Asset loading is unfinished”): append the node group `Smooth by Angle` of "
+    "`geometry_nodes/smooth_by_angle.blend` in `bpy.utils.system_resource('DATAFILES', path=\"assets\")`, and give it "
+    "to a modifier of type 'NODES'."
+)
+_MOVED_TERMINATOR = (
+    "What an object has of it in `ob.cycles` changes no render from 4.5 on: set `ob.shadow_terminator_shading_offset` "
+    "and `ob.shadow_terminator_geometry_offset`."
+)
 _RATED = (
     "A scene has `fps / fps_base` frames a second: 23.976 are `fps = 24` with `fps_base = 1.001`, 29.97 are `fps = 30` "
     "with it."
@@ -313,6 +323,22 @@ ADVICE: tuple[Advice, ...] = (
         _SMOOTHED,
         wherever=(stems("smooth"), stems("angle"), stems("modifier modifiers")),
         needs="bpy.ops.object.shade_auto_smooth",
+    ),
+    Advice(
+        _SMOOTHED_IN_WINDOW,
+        frozenset({"bpy.ops.object.shade_auto_smooth"}),
+        wherever=(stems("smooth"), stems("angle"), stems("modifier modifiers")),
+        since=(4, 1),
+        before=(5, 0),
+    ),
+    Advice(
+        _MOVED_TERMINATOR,
+        of(
+            "CyclesObjectSettings.shadow_terminator_offset",
+            "CyclesObjectSettings.shadow_terminator_geometry_offset",
+        ),
+        wherever=(stems("terminator"), stems("shadow")),
+        since=(4, 5),
     ),
     Advice(_RULED, frozenset({"bpy.ops.boid.rule_add"})),
     Advice(_NO_KEY, of("RetimingKeys.add")),
@@ -413,6 +439,7 @@ ADVICE: tuple[Advice, ...] = (
             stems("coordinates geometry mesh positions vertex vertices"),
             stems("evaluated export get read result"),
         ),
+        unless=stems("closure domain"),  # nodes of these names evaluate something else
     ),
     Advice(
         _AS_MODIFIED,

@@ -19,6 +19,8 @@ _ADDED = frozenset(
     {"button", "buttons", "entries", "entry", "item", "items", "operator", "operators", "option", "options"}
 )
 _KINDS = {"menu": "Menu", "menus": "Menu", "submenu": "Menu", "header": "Header", "headers": "Header"}
+# What comes after the word in names of node trees: of the Menu Switch node, of sockets that are menus.
+_OF_NODES = frozenset({"input", "inputs", "socket", "sockets", "switch"})
 _SAY_NOTHING = STOP_WORDS | _ADDED | _KINDS.keys()
 _MARKS = {"Menu": "MT", "Header": "HT"}
 # What an editor's classes begin with → how people call it.
@@ -44,7 +46,12 @@ class ExtendedMenu(NamedTuple):
 def menu_extended(query: str, reader: BaseReader) -> ExtendedMenu | None:
     """The menus or headers that a question wants something added to; None where it is not sure which."""
     said = words(query)
-    kind = next((_KINDS[word] for word in said if word in _KINDS), "")
+    kinds = (
+        _KINDS[word]
+        for word, after in zip(said, [*said[1:], ""], strict=True)
+        if word in _KINDS and after not in _OF_NODES
+    )
+    kind = next(kinds, "")
     if not kind or len(said) > _MOST_WORDS or _ADDING.isdisjoint(said) or "(" in query:
         return None
     asked = {stem(word) for word in _asked(said)}

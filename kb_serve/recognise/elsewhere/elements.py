@@ -97,6 +97,10 @@ _SELECTED = Elsewhere(f"{T}Object.select_set", "An object is selected by itself:
 _DESELECTED = Elsewhere(
     f"{T}Object.select_set", "An object is deselected by itself: `obj.select_set(False)`."
 )
+_CURVES_ADDED = Elsewhere(
+    f"{T}Curves.add_curves",
+    "Hair curves are added by how many points each has: `curves.add_curves([4, 4])`.",
+)
 # Collection → where elements are added.
 ADDED_BY = {
     f"{T}Object.children": Elsewhere(
@@ -108,6 +112,8 @@ ADDED_BY = {
         f"{T}PointCloud.resize",
         "The point cloud sets how many there are: `pointcloud.resize(3)`.",
     ),
+    f"{T}Curves.curves": _CURVES_ADDED,
+    f"{T}Curves.points": _CURVES_ADDED,
     f"{T}BoidState.rules": Elsewhere(
         "bpy.ops.boid.rule_add",
         f"An operator adds one: {ADDS_BOID_RULE}.",

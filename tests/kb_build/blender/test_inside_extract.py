@@ -342,6 +342,12 @@ def test_context_members_say_where_they_are_none(symbols: dict[str, Symbol]) -> 
     assert not {WITHOUT_ACTIVE, WITHOUT_AREA}.intersection(flags["scene"])
 
 
+def test_what_is_there_without_an_area_once_an_object_is_active_does_not_depend_on_areas(
+    tmp_path: Path,
+) -> None:
+    assert ask_blender(ASK_SHOWN, tmp_path) == {"object": WITHOUT_ACTIVE, "edit_image": WITHOUT_AREA}
+
+
 def test_members_of_the_contexts_class_are_there_in_every_editor(symbols: dict[str, Symbol]) -> None:
     """Some of them editors have as well: the video sequencer its own tool settings."""
     own = [
@@ -753,6 +759,19 @@ with open(sys.argv[2]) as file:
     rows = [json.loads(line) for line in file]
 told = {row["path"]: row.get("needs") or row.get("areas") for row in rows if "path" in row}
 json.dump(told, open(sys.argv[2], "w"))
+os._exit(0)
+"""
+# An editor still shows an object that is active no more; the image of its space is there in an area alone.
+ASK_SHOWN = """
+import json, os, sys
+from kb_build.blender.inside.classes import context
+asked = context.ask_editors
+def ask_editors(names, found):
+    for name in ("object", "edit_image"):
+        found.setdefault(name, ("pointer", "ID"))
+    asked(names, found)
+context.ask_editors = ask_editors
+json.dump(context.probe(("object", "edit_image"))[1], open(sys.argv[2], "w"))
 os._exit(0)
 """
 # Run by this interpreter: whether operators can run in areas of types, with an object in a mode, and after statements.

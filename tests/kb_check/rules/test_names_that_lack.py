@@ -94,6 +94,7 @@ def test_a_property_that_became_a_socket_is_told_but_not_renamed(checker: Checke
         ("bpy.context.scene.cycles.denoise = True", " Closest: `use_denoising`, `denoiser`."),
         # Of classes below that of all collections it has nothing.
         ("bpy.data.pointclouds.new('x').points.add(4)", "sets how many there are: `pointcloud.resize(3)`."),
+        ("bpy.data.hair_curves.new('x').curves.add(4)", "points each has: `curves.add_curves([4, 4])`."),
     ],
 )
 def test_what_may_be_meant_is_told(checker: Checker, code: str, told: str) -> None:

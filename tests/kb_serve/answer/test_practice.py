@@ -979,6 +979,55 @@ def test_smooth_by_angle_is_added_by_an_operator(kb: KnowledgeBase) -> None:
     assert [modifier.type for modifier in bpy.context.object.modifiers] == ["NODES"]
 
 
+def test_without_a_window_it_is_added_by_hand_before_5_0(
+    reader: BaseReader, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(reader.meta, "minor", "4.5")
+    assert "`geometry_nodes/smooth_by_angle.blend`" in said(reader, "bpy.ops.object.shade_auto_smooth")
+    monkeypatch.setitem(reader.meta, "minor", "5.0")
+    assert "smooth_by_angle.blend" not in said(reader, "bpy.ops.object.shade_auto_smooth")
+
+
+def light_on_sphere(folder: Path, of_cycles: float, of_object: float) -> list[float]:
+    """The pixels of a coarse smooth sphere, with the offsets of its shadow terminator where either is kept."""
+    bpy.ops.wm.read_factory_settings()
+    scene = bpy.context.scene
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples, scene.cycles.use_denoising = 1, False
+    scene.render.resolution_x = scene.render.resolution_y = 48
+    bpy.data.objects.remove(bpy.data.objects["Cube"])
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=8, ring_count=6)
+    sphere = bpy.context.object
+    sphere.data.shade_smooth()
+    sphere.cycles.shadow_terminator_offset = of_cycles
+    sphere.shadow_terminator_shading_offset = of_object
+    scene.render.filepath = str(folder / "sphere.png")
+    bpy.ops.render.render(write_still=True)
+    return list(bpy.data.images.load(scene.render.filepath).pixels)
+
+
+def test_the_shadow_terminator_is_the_objects_own(reader: BaseReader, tmp_path: Path) -> None:
+    settings = f"{TYPES}CyclesObjectSettings.shadow_terminator_offset"
+    assert "`ob.shadow_terminator_shading_offset`" in said(reader, settings)
+    assert light_on_sphere(tmp_path, 1.0, 0.0) == light_on_sphere(tmp_path, 0.0, 0.0)
+    assert light_on_sphere(tmp_path, 0.0, 1.0) != light_on_sphere(tmp_path, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("question", "is_told"),
+    [
+        ("read the vertices of the evaluated mesh", True),
+        ("evaluate closure node in geometry nodes", False),
+        ("evaluate on domain node geometry nodes", False),
+    ],
+)
+def test_a_node_that_evaluates_something_is_no_evaluated_object(
+    kb: KnowledgeBase, question: str, is_told: bool
+) -> None:
+    told = any("`ob.data` is the mesh without modifiers" in note for note in kb.query(question).notes)
+    assert told == is_told
+
+
 def bounce_of(body: float, floor: float) -> float:
     """How high a cube comes back that falls on a floor, each with its restitution."""
     bpy.ops.wm.read_factory_settings(use_empty=True)

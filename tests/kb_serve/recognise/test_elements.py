@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 _ADDED = {
     "LayerObjects.selected": ("bpy.context.view_layer.objects.selected", "other.select_set(True)", 1),
     "PointCloud.points": ("bpy.data.pointclouds[0].points", "bpy.data.pointclouds[0].resize(3)", 3),
+    "Curves.curves": ("bpy.data.hair_curves[0].curves", "bpy.data.hair_curves[0].add_curves([4, 4])", 2),
+    "Curves.points": ("bpy.data.hair_curves[0].points", "bpy.data.hair_curves[0].add_curves([4, 4])", 8),
     "BoidState.rules": (
         "psys.settings.boids.states[0].rules",
         "with bpy.context.temp_override(particle_settings=psys.settings): "
@@ -211,6 +213,7 @@ for collection, change in json.load(open(sys.argv[-1])):
     node_tree.links.new(valued.outputs[0], linked_to.inputs[0])
     text = bpy.data.texts.new("t")
     bpy.data.pointclouds.new("p")
+    bpy.data.hair_curves.new("h")
     drawing = bpy.data.grease_pencils.new("g").layers.new("l").frames.new(1).drawing
     armature = bpy.data.armatures.new("a")
     rig = linked("Rig", armature)
@@ -267,6 +270,7 @@ def test_all_are_tried_and_known(kb: KnowledgeBase) -> None:
         ("obj.data.shape_keys.key_blocks.remove(kb)", "bpy.types.Object.shape_key_remove"),
         ('armature.bones.new("Bone")', "bpy.types.ArmatureEditBones.new"),
         ('bpy.data.pointclouds.new("P").points.add(3)', "bpy.types.PointCloud.resize"),
+        ('bpy.data.hair_curves.new("H").curves.add(3)', "bpy.types.Curves.add_curves"),
         ("context.view_layer.objects.selected.add(ob)", "bpy.types.Object.select_set"),
         ("var = drv.variables.new()\nt = var.targets.new()", "bpy.types.DriverVariable.type"),
         ("AttributeError: 'ParticleSystems' object has no attribute 'new'", "bpy.types.ObjectModifiers.new"),

@@ -35,6 +35,8 @@ def test_the_class_of_the_menu_is_told(kb: KnowledgeBase, question: str, extende
         "how do I make a header in the text editor bold",
         "menu of recent files",
         "remove an entry from the object context menu",
+        "menu switch node add enum items",
+        "add an item to a menu socket of a node group",
     ],
 )
 def test_where_it_is_not_sure_which_none_is_told(kb: KnowledgeBase, question: str) -> None:

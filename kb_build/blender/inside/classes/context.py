@@ -96,6 +96,7 @@ def probe(names):
     ask_editors(names, found)
     none |= dict.fromkeys(found.keys() - outside, WITHOUT_AREA)
     in_areas = set(found)
+    there = {}  # of those that areas alone gave, what is there outside of them once an object is active
     for kind in ("MESH", "CURVE", "ARMATURE"):
         if not make_object(kind):
             continue
@@ -104,8 +105,10 @@ def probe(names):
                 bpy.ops.object.mode_set(mode=mode)
             except Exception:
                 continue
+            ask(none, there)
             ask_editors(names, found)
-    return found, none | dict.fromkeys(found.keys() - in_areas, WITHOUT_ACTIVE)
+    # An editor may go on showing an object that is no longer active: what it gave was not due to the area.
+    return found, none | dict.fromkeys({*there, *(found.keys() - in_areas)}, WITHOUT_ACTIVE)
 
 
 def guess(name):
