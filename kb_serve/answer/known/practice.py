@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import stems_of
 from kb_serve.answer.known.addon_sentences import ADDON_SENTENCES
 from kb_serve.answer.known.advice import ADVICE
+from kb_serve.answer.known.changed_defaults import ADVICE_ON_DEFAULTS
 from kb_serve.answer.known.task_sentences import TASK_SENTENCES
 from kb_serve.recognise.chains.subscripts import NODES_MODIFIER, CustomProperties
 from kb_serve.recognise.message_patterns import is_message
@@ -67,7 +68,7 @@ class Practice:
         version = version_key(self._reader.meta.get("minor", ""))
         return tuple(
             advice
-            for advice in (*ADVICE, *TASK_SENTENCES, *ADDON_SENTENCES)
+            for advice in (*ADVICE, *ADVICE_ON_DEFAULTS, *TASK_SENTENCES, *ADDON_SENTENCES)
             if advice.since <= version < advice.before
             and (not advice.needs or self._reader.entry(advice.needs) is not None)
         )
