@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 INSTALLED = "5.1"
-VERSIONS = ["3.4", "4.2", "4.5", "5.0", INSTALLED, "5.2"]
+VERSIONS = ["3.4", "4.2", "4.5", "5.0", INSTALLED, "5.2", "5.3"]
 AROUND = """
 import bpy
 material = bpy.data.materials.new("x")
