@@ -16,7 +16,7 @@ REPO = Path(__file__).resolve().parent.parent
 QUERIES = REPO / "corpora" / "queries"
 BLENDER = "5.1"  # the version that the labels were written for
 # Those that scripts are run in, as far as they are here.
-BLENDERS = ("3.4", "4.2", "4.5", "5.0", BLENDER, "5.2")
+BLENDERS = ("3.4", "4.2", "4.5", "5.0", BLENDER, "5.2", "5.3")
 _CLEANED = ("PYTHONDONTWRITEBYTECODE", "PYTHONUNBUFFERED", "PYTHONPROFILEIMPORTTIME")
 
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 SKILLS = sorted((REPO / "plugin" / "skills").glob("*/SKILL.md"))
-SUPPORTED = ("4.2", "4.3", "4.4", "4.5", "5.0", "5.1", "5.2")
+SUPPORTED = ("4.2", "4.3", "4.4", "4.5", "5.0", "5.1", "5.2", "5.3")
 FIRST = first_profiles(Suite(tuple(BY_NAME.values())), Team())
 TOOLS = {*BY_NAME, *TOOL_NAMES, PLAN_CHECK}
 FENCED = re.compile(r"```(\w+)\n(.*?)```", re.DOTALL)

@@ -47,20 +47,20 @@ def committed() -> ApiHistory:
         ("bpy.types.BevelModifier.use_only_vertices", ("2.79", "2.83")),
         ("bpy.types.Action.fcurves", ("2.79", "4.5")),
         ("bpy.types.Scene.node_tree", ("2.79", "4.5")),
-        ("bpy.types.Scene.compositing_node_group", ("5.0", "5.2")),
+        ("bpy.types.Scene.compositing_node_group", ("5.0", "5.3")),
         ("bpy.types.Mesh.use_auto_smooth", ("2.79", "4.0")),
         ("bpy.types.SceneEEVEE.use_bloom", ("2.80", "4.2")),
         ("bpy.ops.export_mesh.stl", ("2.79", "4.1")),
-        ("bpy.ops.wm.stl_export", ("4.1", "5.2")),
+        ("bpy.ops.wm.stl_export", ("4.1", "5.3")),
         ('bpy.types.ShaderNodeBsdfPrincipled.inputs["Specular"]', ("3.4", "3.4")),
-        ('bpy.types.ShaderNodeBsdfPrincipled.inputs["Specular IOR Level"]', ("4.2", "5.2")),
+        ('bpy.types.ShaderNodeBsdfPrincipled.inputs["Specular IOR Level"]', ("4.2", "5.3")),
         ("bpy.types.ShaderNodeTexSky.sky_type:NISHITA", ("2.90", "4.5")),
         ("bpy.types.SequenceEditor.sequences", ("2.79", "4.5")),
-        ("bpy.types.SequenceEditor.strips", ("4.4", "5.2")),
+        ("bpy.types.SequenceEditor.strips", ("4.4", "5.3")),
         ("bpy.types.RenderSettings.engine:BLENDER_EEVEE_NEXT", ("4.2", "4.5")),
-        ("bpy.types.UILayout.label(icon):CAMERA_DATA", ("2.79", "5.2")),
-        ("bpy.ops.object.modifier_add(type):NODES", ("2.92", "5.2")),
-        ('bpy.types.CompositorNodeRLayers.outputs["Image"]', ("3.4", "5.2")),
+        ("bpy.types.UILayout.label(icon):CAMERA_DATA", ("2.79", "5.3")),
+        ("bpy.ops.object.modifier_add(type):NODES", ("2.92", "5.3")),
+        ('bpy.types.CompositorNodeRLayers.outputs["Image"]', ("3.4", "5.3")),
         ("bpy.types.Object.no_such_property", None),
     ],
 )
@@ -70,9 +70,9 @@ def test_the_committed_history_dates_symbols(
     assert committed.span(path) == span
 
 
-def test_the_committed_history_reaches_from_2_79_to_5_2_without_a_gap(committed: ApiHistory) -> None:
+def test_the_committed_history_reaches_from_2_79_to_5_3_without_a_gap(committed: ApiHistory) -> None:
     old = "2.79 2.80 2.81 2.82 2.83 2.90 2.91 2.92 2.93 3.0 3.1 3.2 3.3 3.4 3.5 3.6"
-    assert committed.versions == tuple(f"{old} 4.0 4.1 4.2 4.3 4.4 4.5 5.0 5.1 5.2".split())
+    assert committed.versions == tuple(f"{old} 4.0 4.1 4.2 4.3 4.4 4.5 5.0 5.1 5.2 5.3".split())
 
 
 def test_the_committed_history_survives_a_round_trip(committed: ApiHistory) -> None:

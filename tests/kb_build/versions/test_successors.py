@@ -146,7 +146,7 @@ def test_every_row_says_why_or_what_and_where_it_is_written(table: list[Successi
     assert len(olds) == len(set(olds))
 
 
-@pytest.mark.parametrize("version", ["3.4", "4.2", "4.5", "5.0", "5.1", "5.2"])
+@pytest.mark.parametrize("version", ["3.4", "4.2", "4.5", "5.0", "5.1", "5.2", "5.3"])
 def test_successors_exist_in_every_version_that_can_be_built(
     history: ApiHistory, table: list[Succession], version: str
 ) -> None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 INSTALLED = "5.1"
-VERSIONS = ["3.4", "4.2", "4.5", "5.0", INSTALLED, "5.2"]
+VERSIONS = ["3.4", "4.2", "4.5", "5.0", INSTALLED, "5.2", "5.3"]
 AROUND = """
 import bpy
 material = bpy.data.materials.new("x")
@@ -207,3 +207,23 @@ def test_what_runs_has_no_error_and_what_does_not_has(version: str, base: Path, 
         }
     assert {name: messages for name, messages in told.items() if messages and name in READY} == {}
     assert all(told[name] for name in WRONG)
+
+
+_NAMED_GROUPS = """
+import bpy
+Item = type("Item", (bpy.types.PropertyGroup,), {})
+bpy.utils.register_class(Item)
+bpy.types.Scene.things = bpy.props.CollectionProperty(type=Item)
+thing: bpy.types.PropertyGroup = bpy.context.scene.things.add()
+thing.name = "first"
+assert bpy.context.scene.things["first"] == thing
+"""
+
+
+@pytest.mark.blender
+@pytest.mark.parametrize("version", VERSIONS)
+def test_the_name_of_a_property_group_can_be_set(version: str, tmp_path: Path) -> None:
+    """RNA says of the class that it cannot, since 5.3."""
+    with Checker(base_of(version)) as checker:
+        assert checker.check(_NAMED_GROUPS) == []
+    assert not any(errors_in(version, tmp_path, _NAMED_GROUPS.splitlines()))

@@ -206,7 +206,7 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
         ),
         (
             "AttributeError: 'GreasePencilFrame' object has no attribute 'strokes'",
-            "never had it from 4.3 to 5.2 (add-ons and custom properties aside).\nIts `.drawing` has it: "
+            "never had it from 4.3 to 5.3 (add-ons and custom properties aside).\nIts `.drawing` has it: "
             "`.drawing.strokes` (`bpy.types.GreasePencilDrawing.strokes`).",
         ),
         (

@@ -7,14 +7,16 @@ import types
 import bpy
 
 from ..wire import limit, plain
+from .own_groups import GROUP, settable
 
 UI_BASES = (
     "Panel", "Menu", "Header", "UIList", "AssetShelf", "KeyingSetInfo", "Gizmo", "GizmoGroup", "FileHandler",
     "RenderEngine", "HydraRenderEngine",
 )  # fmt: skip
+READ_ONLY = "readonly"
 # ``is_overridable`` is left out: reading it on Image.pixels crashes Blender.
 FLAGS = (
-    ("is_readonly", "readonly"), ("is_animatable", "animatable"), ("is_library_editable", "library-editable"),
+    ("is_readonly", READ_ONLY), ("is_animatable", "animatable"), ("is_library_editable", "library-editable"),
     ("is_never_none", "never-none"), ("is_enum_flag", "enum-flag"),
     ("is_hidden", "hidden"), ("is_runtime", "runtime"), ("is_required", "required"),
     ("is_path_supports_blend_relative", "blend-relative"),
@@ -279,6 +281,8 @@ def write_struct(write, identifier, rna):
         row = describe(prop)
         if identifier == LAYOUT:
             row["default"] = None
+        if identifier == GROUP and prop.identifier in settable():
+            row["flags"] = [flag for flag in row["flags"] if flag != READ_ONLY]
         if prop.identifier == key and key != "name":
             row["flags"].append("names-items")
         write("symbol", path=f"{path}.{prop.identifier}", kind="property", owner=path, **row)

@@ -28,9 +28,10 @@ EDITORS = (
     "SEQUENCE_EDITOR", "CLIP_EDITOR", "DOPESHEET", "TIMELINE", "FCURVES", "DRIVERS", "NLA_EDITOR", "TEXT_EDITOR",
     "CONSOLE", "INFO", "OUTLINER", "PROPERTIES", "FILES", "ASSETS", "SPREADSHEET", "PREFERENCES",
 )  # fmt: skip
-# What people do to an interface: asked in an area that shows none, they end some of 3.4 to 4.5.
+# What people do to an interface: asked in an area that shows none, they end some of 3.4 to 5.3.
 NOT_ASKED = (
-    "object.modifier_copy_to_selected", "outliner.data_operation", "ui.view_drop", "view2d.scroller_activate",
+    "object.modifier_copy_to_selected", "outliner.data_operation", "ui.region_clear_filter", "ui.region_start_filter",
+    "ui.view_drop", "view2d.scroller_activate",
 )  # fmt: skip
 # The statement of what is wanted beside an area where that was not found.
 ALONE = "..."
