@@ -44,7 +44,7 @@ _FUNCTIONS = frozenset(
 _ANGLES = frozenset({"degrees", "radians"})
 _BUILTINS = frozenset({"abs", "divmod", "float", "int", "pow", "round"})
 _OF_SEVERAL = frozenset({"divmod", "pow"})  # that take two numbers; of the others the first argument is one
-_SIGNS = {ast.Pow: "**", ast.FloorDiv: "//", ast.Mod: "%"}
+_SIGNS: dict[type[ast.operator], str] = {ast.Pow: "**", ast.FloorDiv: "//", ast.Mod: "%"}
 _VECTOR = "mathutils.Vector"
 _ROWS = frozenset(f"mathutils.{name}" for name in ("Color", "Euler", "Matrix", "Quaternion", "Vector"))
 # What is meant by what a vector does not take.
