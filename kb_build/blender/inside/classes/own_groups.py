@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Finds what a script can set on its own property groups, whatever RNA says of the class that they derive from.
 
-Since 5.3 RNA calls ``PropertyGroup.name`` read-only, and gives each class that a script registers a ``name`` of its own,
-which is not. No instance is of the bare class.
+Since 5.3 RNA calls ``PropertyGroup.name`` read-only, and gives each class that a script registers a ``name`` of its
+own, which is not. No instance is of the bare class.
 """
 
 import functools
