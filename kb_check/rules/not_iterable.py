@@ -14,7 +14,7 @@ for value in ob.values:  # reported: a method, which is called
 ```
 
 A warning where the thing is annotated so: either the annotation or the use is wrong. Not reported: classes of the
-script that can be looped over, and what stands in a ``try``.
+script that can be looped over, what the script asks for `__iter__`, and what stands in a ``try``.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from kb_check.findings import Edit, Finding, Fix
 from kb_check.registered.classes import own_classes
 from kb_check.rule import Rule
 from kb_check.running.tried import is_tried
-from kb_check.script import once_for_each
+from kb_check.script import once_for_each, once_per_script
 from kb_check.syntax.annotated import ONE_IS_WRONG, annotated
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ _OTHERS = frozenset(
 def _check(script: Script) -> Iterator[Finding]:
     for node, method, target in _asked(script):
         refused = _refused(script, node, method)
-        if refused is None or is_tried(script, node, _ERRORS):
+        if refused is None or is_tried(script, node, _ERRORS) or ast.unparse(node) in _asked_whether(script):
             continue
         if isinstance(refused, Function):
             edit = Edit.behind(script.span(node), "()")
@@ -96,6 +96,17 @@ def _asked(script: Script) -> Iterator[tuple[ast.expr, str, ast.expr | None]]:
         elif name in _LOOPING or (name in _ALONE and len(call.args) == 1):
             given = call.args[_LOOPING.get(name, 0) :][: 1 if name in _ONE else None]
             yield from ((node, _ITERATES, None) for node in given if not isinstance(node, ast.Starred))
+
+
+@once_per_script
+def _asked_whether(script: Script) -> frozenset[str]:
+    """What the script asks for the methods of collections, as it is written: it is ready for what has none."""
+    return frozenset(
+        ast.unparse(call.args[0])
+        for call in script.all(ast.Call)
+        if builtin_called(script, call) in {"hasattr", "getattr"} and len(call.args) > 1
+        and isinstance(call.args[1], ast.Constant) and str(call.args[1].value).startswith("__")
+    )  # fmt: skip
 
 
 def _refused(script: Script, node: ast.expr, method: str) -> Instance | Function | None:

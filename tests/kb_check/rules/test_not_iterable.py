@@ -53,6 +53,7 @@ _RUN = (
     "list(Vector())",
     "sum(ob.location, start=1.0)",
     "sorted([ob, scene], key=str)",
+    "list(ob) if hasattr(ob, '__iter__') else [ob]",
 )
 
 
