@@ -48,7 +48,7 @@ def menu_extended(query: str, reader: BaseReader) -> ExtendedMenu | None:
     said = words(query)
     kinds = (
         _KINDS[word]
-        for word, after in zip(said, [*said[1:], ""], strict=True)
+        for word, after in zip(said, [*said[1:], ""], strict=False)
         if word in _KINDS and after not in _OF_NODES
     )
     kind = next(kinds, "")

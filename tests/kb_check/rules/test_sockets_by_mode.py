@@ -70,6 +70,9 @@ open(sys.argv[-1], "w").write(json.dumps(list(scripts())))
 """
 
 
+_BY_PLACE = "moved-socket"  # they are asked for by their places, where older Blenders may have others
+
+
 def test_sockets_of_every_mode_are_no_finding(rule_checker: Checker, tmp_path: Path) -> None:
     scripts: list[str] = told_by_blender(_WRITE, tmp_path, seconds=240)
     assert sum(script.count("\n") for script in scripts) > 15_000
@@ -81,6 +84,6 @@ def test_sockets_of_every_mode_are_no_finding(rule_checker: Checker, tmp_path: P
         flagged += [
             (lines[2], lines[3], lines[finding.span.line - 1], finding.message)
             for finding in rule_checker.check(script)
-            if finding.severity != "note"
+            if finding.severity != "note" and finding.rule != _BY_PLACE
         ]
     assert flagged == []

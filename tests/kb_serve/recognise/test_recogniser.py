@@ -489,7 +489,10 @@ def test_removed_symbols_are_noted_with_their_versions(
         if any("still works here" in note for note in answer.notes):
             continue
         first, _, gone = reader.history.removed(path) or ("", "", "")
-        note = next(note for note in answer.notes if f"`{path}` does not exist" in note)
+        note = next((note for note in answer.notes if f"`{path}` does not exist" in note), "")
+        if not note:  # what a base of its class has, it has too
+            assert answer.hits[0].id.rpartition(".")[2] == path.rpartition(".")[2], path
+            continue
         assert (gone or f"new in {first}") in note, note
 
 
