@@ -14,12 +14,10 @@ Not reported: what only newer Blenders have there; `check --blender 4.2,5.2` tel
 
 from __future__ import annotations
 
-import ast
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.api_names import SIDES
 from kb_check.findings import Finding
-from kb_check.nodes.socket_at import socket_at
+from kb_check.nodes.socket_at import sockets_by_place
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -29,17 +27,14 @@ if TYPE_CHECKING:
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for node in script.all(ast.Subscript):
-        if not isinstance(node.value, ast.Attribute) or node.value.attr not in SIDES:
-            continue
-        asked = socket_at(script, node)
-        before = script.names.reader.history.moved_socket(asked.place) if asked else []
-        if asked is None or not before or script.is_doubted(script.span(node)):
+    for node, asked in sockets_by_place(script):
+        before = script.names.reader.history.moved_socket(asked.place)
+        if not before or script.is_doubted(script.span(node)):
             continue
         advice = f" Write `{asked.by_name}`, or the name of the one that is meant." if asked.by_name else ""
         yield Finding(
             RULE.id, "warning", script.span(node),
-            f"`{node.value.attr}[{asked.number}]` of `{asked.socket.owner}` is {asked.socket.label!r} in Blender "
+            f"`{asked.subscript}` of `{asked.socket.owner}` is {asked.socket.label!r} in Blender "
             f"{script.names.version}; it was {_told(before)}.{advice}",
             asked.socket.path,
         )  # fmt: skip

@@ -25,6 +25,7 @@ from kb_check.running.raised import REFUSES
 from kb_check.running.tried import is_tried
 from kb_check.script import once_per_script
 from kb_check.syntax.literals import times_bound
+from kb_check.values.mathutils_sizes import VECTOR
 from kb_check.values.misfits import describe
 
 if TYPE_CHECKING:
@@ -45,7 +46,6 @@ _ANGLES = frozenset({"degrees", "radians"})
 _BUILTINS = frozenset({"abs", "divmod", "float", "int", "pow", "round"})
 _OF_SEVERAL = frozenset({"divmod", "pow"})  # that take two numbers; of the others the first argument is one
 _SIGNS: dict[type[ast.operator], str] = {ast.Pow: "**", ast.FloorDiv: "//", ast.Mod: "%"}
-_VECTOR = "mathutils.Vector"
 _ROWS = frozenset(f"mathutils.{name}" for name in ("Color", "Euler", "Matrix", "Quaternion", "Vector"))
 # What is meant by what a vector does not take.
 _OF_VECTOR = {
@@ -68,7 +68,7 @@ def _check(script: Script) -> Iterator[Finding]:
         sign, left = _SIGNS.get(type(node.op), ""), script.class_of(node.left)
         is_math = sign and left in _ROWS and _is_number_or_row(script, node.right)
         if is_math and not is_tried(script, node, REFUSES):
-            told = f" {_OF_VECTOR[sign]}" if left == _VECTOR and sign in _OF_VECTOR else ""
+            told = f" {_OF_VECTOR[sign]}" if left == VECTOR and sign in _OF_VECTOR else ""
             yield Finding(
                 RULE.id, "error", script.span(node), f"`{left} {sign}` is refused: it takes `*` and `/`.{told}", left
             )  # fmt: skip
@@ -145,7 +145,7 @@ def _advice(script: Script, function: str, kind: Type, node: ast.expr) -> str:
     if name in _ANGLES and not isinstance(kind, Plain):
         text = script.text(script.span(node))
         return f" Of each angle: `[{function}(angle) for angle in {text}]`." if "\n" not in text else ""
-    is_vector = isinstance(kind, Instance) and kind.cls == _VECTOR
+    is_vector = isinstance(kind, Instance) and kind.cls == VECTOR
     return f" {_OF_VECTOR[name]}" if is_vector and name in _OF_VECTOR else ""
 
 

@@ -5,14 +5,12 @@ Only where it is said which Blender the script was written for: a number tells n
 
 from __future__ import annotations
 
-import ast
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.api_names import SIDES
 from kb_build.symbols.paths import socket_name
 from kb_check.migrate.place import version_of
 from kb_check.migrate.rewrite import Rewrite
-from kb_check.nodes.socket_at import by_name, socket_at
+from kb_check.nodes.socket_at import by_name, sockets_by_place
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,21 +24,16 @@ def _propose(place: Place) -> Iterator[Change]:
     source, history = place.source, place.script.names.reader.history
     if source is None:
         return
-    for node in place.script.all(ast.Subscript):
-        if not isinstance(node.value, ast.Attribute) or node.value.attr not in SIDES:
-            continue
-        asked = socket_at(place.script, node)
-        if asked is None:
-            continue
+    for node, asked in sockets_by_place(place.script):
         before = next(
             (name for version, name in history.moved_socket(asked.place) if version_of(version) == source),
             "",
         )
-        meant = _called(place, asked.socket.owner, node.value.attr, before) if before else None
+        meant = _called(place, asked.socket.owner, asked.socket.side, before) if before else None
         if meant is None or not by_name(meant):
             continue
         _, _, key = by_name(meant).partition("[")
-        told = f"{node.value.attr}[{asked.number}] is {before!r} in {source[0]}.{source[1]}"
+        told = f"{asked.subscript} is {before!r} in {source[0]}.{source[1]}"
         yield place.change(
             REWRITE.id, meant.path, [place.write(node.slice, key.removesuffix("]"))],
             reason=f"{told}, and {asked.socket.label!r} now.", targets=[meant.path],

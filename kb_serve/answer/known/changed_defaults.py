@@ -67,7 +67,7 @@ def _advice(changed: ChangedDefault) -> Advice:
     what = (
         f"A call without `{parameter[:-1]}` does another thing"
         if parameter
-        else (f"New ones have another `{above.rpartition('.')[2]}`")
+        else f"New ones have another `{above.rpartition('.')[2]}`"
     )
     text = (
         f"{what} since Blender {since}{'' if is_next else ' at the latest'}: it was {changed.former} in {last}."
